@@ -29,7 +29,7 @@ foreach(source ${sources})
   endif()
 endforeach()
 # those that know which instruction sets there are, see transfer/isa.h
-set(MPM_SELECT_SOURCES ${MPM_DIR}/transfer/isa.cpp ${MPM_DIR}/law/registry.cpp ${MPM_DIR}/material/batch.cpp
+set(MPM_SELECT_SOURCES ${MPM_DIR}/transfer/isa.cpp ${MPM_DIR}/law/registry.cpp ${MPM_DIR}/material/batch_kernels.cpp
     ${MPM_DIR}/solve/block_kernels.cpp)
 list(REMOVE_ITEM MPM_CORE_SOURCES ${MPM_SELECT_SOURCES})
 file(GLOB MPM_HEADERS CONFIGURE_DEPENDS ${MPM_DIR}/*/*.h)

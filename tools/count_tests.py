@@ -1,7 +1,8 @@
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
 """Count test cases in folders of results: ctest.xml and one json file of
-GoogleTest per test.  Prints "N passed, N failed"; fails if any failed or none ran."""
+GoogleTest per test.  Prints the cases that took longest, and "N passed, N failed"; fails if
+any failed or none ran."""
 
 import json
 import os
@@ -9,13 +10,19 @@ import sys
 import xml.etree.ElementTree as xml
 
 
+slowest = []    # (seconds of processor time of the first process, test, case)
+
+
 def cases(path):
     """passed, failed, skipped cases of one GoogleTest report"""
     with open(path) as file:
         report = json.load(file)
     count = [0, 0, 0]
+    test = os.path.basename(path)[:-5]
     for suite in report["testsuites"]:
         for case in suite["testsuite"]:
+            name = case.get("classname", test) + "." + case["name"]
+            slowest.append((float(case.get("seconds", 0.0)), test, name))
             if case.get("failures"):
                 count[1] += 1
             elif case.get("result") == "SKIPPED" or case.get("status") == "NOTRUN":
@@ -51,6 +58,9 @@ def count(folder):
 
 def main(folders):
     total = [sum(column) for column in zip(*map(count, folders))]
+    print("most processor time:")
+    for seconds, test, name in sorted(slowest, reverse=True)[:10]:
+        print("%8.1f s  %s %s" % (seconds, test, name))
     if total[2]:
         print(total[2], "skipped")
     print("%d passed, %d failed" % (total[0], total[1]))

@@ -28,7 +28,7 @@
 #include "input.h"
 #include "lammps.h"
 #include "long_case.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "modify.h"
 #include "step/fix_mpm.h"

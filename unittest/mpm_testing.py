@@ -159,6 +159,11 @@ def warnings(output):
     return [line for line in output.splitlines() if line.startswith("WARNING")]
 
 
+def processor_time():
+    """of this process and those that it has run"""
+    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+
+
 def main(scope):
     """Run the tests in order of definition, or those named on the command line."""
     tests = [(name, f) for name, f in scope.items() if name.startswith("test_") and callable(f)]
@@ -169,7 +174,7 @@ def main(scope):
     for name, function in tests:
         case = {"name": name, "status": "RUN", "result": "COMPLETED"}
         print("[ RUN      ]", name, flush=True)
-        start = time.time()
+        start, used = time.time(), processor_time()
         try:
             function()
             word = "      OK"
@@ -184,6 +189,7 @@ def main(scope):
             failed += 1
             word = " FAILED "
         print("[ %s ] %s (%.1f s)" % (word, name, time.time() - start), flush=True)
+        case["seconds"] = processor_time() - used
         cases.append(case)
     where = os.environ.get("GTEST_OUTPUT", "")
     if where.startswith("json:"):

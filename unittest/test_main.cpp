@@ -14,6 +14,8 @@
 
 #include <cstdio>
 #include <cstring>
+#include <ctime>
+#include <string>
 
 // used by LAMMPS's test fixture
 bool verbose = false;
@@ -46,6 +48,18 @@ class ReportFailures : public ::testing::EmptyTestEventListener {
   explicit ReportFailures(int rank) : rank(rank) {}
 };
 
+/** Reports the processor time of each case, for tools/count_tests.py. */
+class ReportSeconds : public ::testing::EmptyTestEventListener {
+  std::clock_t start = 0;
+
+  void OnTestStart(const ::testing::TestInfo &) override { start = std::clock(); }
+  void OnTestEnd(const ::testing::TestInfo &) override
+  {
+    const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+    ::testing::Test::RecordProperty("seconds", std::to_string(seconds));
+  }
+};
+
 int main(int argc, char **argv)
 {
   MPI_Init(&argc, &argv);
@@ -65,6 +79,8 @@ int main(int argc, char **argv)
     delete listeners.Release(listeners.default_xml_generator());    // one process writes the file
     listeners.Append(new ReportFailures(rank));
   }
+
+  ::testing::UnitTest::GetInstance()->listeners().Append(new ReportSeconds);
 
   int failed = RUN_ALL_TESTS();
   MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);

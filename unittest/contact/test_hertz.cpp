@@ -204,6 +204,7 @@ timestep $(0.4*v_h/1.16)
 // contact
 TEST(Hertz, OnSeveralLattices)
 {
+  LONG_CASE();
   const Block block = {0.3, 10.0, 20.0, 20.0};
   const double ends[4] = {3.0, 6.0, 11.0, 20.0};    // of the lattices, from the finest
   Errors error[2];

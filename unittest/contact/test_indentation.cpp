@@ -159,6 +159,7 @@ TEST(Indentation, ConeThatIsAWall)
 
 TEST(Indentation, SphereAtThePlasticLimit)
 {
+  LONG_CASE();
   const double E = 1000.0, R = 5.0, h = 0.25, end = 0.28;
   const auto shape = [&](double r) {
     return R - std::sqrt(R * R - r * r);
@@ -270,6 +271,7 @@ create_box 2 box
 
 TEST(Scratch, ConeInPlasticMetal)
 {
+  LONG_CASE();
   const double plough = 2.0 / PI * SLOPE;
   double smooth = 0.0;    // ratio without friction
   for (const double mu : {0.0, 0.2}) {
@@ -376,6 +378,7 @@ static double ploughing(double mu)
 
 TEST(Scratch, RegionAsTool)
 {
+  LONG_CASE();
   EXPECT_NEAR(ploughing(0.0), 2.0 / PI * SLOPE, 1e-6);
   double smooth = 0.0;
   for (const double mu : {0.0, 0.3}) {
@@ -398,6 +401,7 @@ TEST(Scratch, RegionAsTool)
 
 TEST(Scratch, ToolOfTriangles)
 {
+  LONG_CASE();
   const int n = 64;
   const double top = 12.0;
   const auto at = [&](int i) {
@@ -424,6 +428,7 @@ TEST(Scratch, ToolOfTriangles)
 
 TEST(Scratch, SphereInPlasticMetal)
 {
+  LONG_CASE();
   const double sine = 0.4, angle = std::asin(sine), d = 0.9, R = d / (1.0 - std::cos(angle));
   const auto s = scratch(0.0, d, 12.0, sine * R, [&](double r) {
     r = std::min(r, 0.65 * R);    // corners of the tool stay in the box

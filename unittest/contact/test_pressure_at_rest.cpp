@@ -157,6 +157,7 @@ PARAMETER_TEST(WaterOnPlate, PressureIsThatOfItsDepth, Coupling,
                       Coupling{2, 1.0 / 50, 0.4}, Coupling{1, 1.0 / 40, 0.4},
                       Coupling{1, 1.0 / 50, 0.9}))
 {
+  LONG_AFTER(1);
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const auto [nfields, h, smooth] = GetParam();
   Pool pool(h, nfields, smooth);
@@ -640,6 +641,7 @@ struct Tank {
 PARAMETER_TEST(Sloshing, HasThePeriodOfLinearTheory, Tank,
                Values(Tank{20, 40, 0.4}, Tank{40, 10, 0.9}))
 {
+  LONG_AFTER(1);
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const auto [n, c, smooth] = GetParam();
   const double second = std::pow(M_PI / n, 2);

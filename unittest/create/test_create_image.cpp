@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit input physics
 // mpi: 1 4
@@ -172,7 +172,8 @@ TEST(Counts, ThresholdsOf8And16Bits)
 
 // ---------------------------------------------------------------- where things are
 
-// an L: a bar on the left, its foot to the right at the lower end; the picture has its first row at the top
+// an L: a bar on the left, its foot to the right at the lower end; the picture has its first row at
+// the top
 int letter(int i, int j, int)
 {
   return i < 2 || j >= 4 ? 255 : 0;    // 4 columns, 6 rows
@@ -422,8 +423,8 @@ TEST(Surface, VolumeOfADiskIsOfSecondOrder)
                                 total(points) / (PI * 0.09)) -
                        1.0);
       EXPECT_LT(errors.back(), 0.0) << "smoothing takes from what is convex";
-      // values with a variance V across the surface have it at V / 2R inside: W^2, 1/12 of the mean over a pixel, and
-      // 1/6 of straight lines between pixels
+      // values with a variance V across the surface have it at V / 2R inside: W^2, 1/12 of the mean
+      // over a pixel, and 1/6 of straight lines between pixels
       EXPECT_NEAR(errors.back() * R * R, -(1.0 + 1.0 / 12.0 + 1.0 / 6.0), 0.15);
     }
     EXPECT_NEAR(std::log2(errors[0] / errors[4]) / 4.0, 2.0, 0.15);
@@ -482,7 +483,8 @@ TEST(Surface, NothingIsLost)
   EXPECT_NEAR(volume[1] / volume[3], 1.0, 1e-4);
 }
 
-// a plane at 1/3 of a pixel, by the brightness of the pixels that it cuts; what is dark, too, and the rest of the picture
+// a plane at 1/3 of a pixel, by the brightness of the pixels that it cuts; what is dark, too, and
+// the rest of the picture
 TEST(Surface, PlaneAndItsComplement)
 {
   const ScratchFile file("plane.pgm", pgm(Pixels(10, 4, 1, [](int i, int, int) {
@@ -520,7 +522,8 @@ TEST(Surface, GoesOnAcrossPeriodicFaces)
   EXPECT_NEAR(volume[0], volume[1], 1e-7);
 }
 
-// gray values as the temperature at the start, and as the factor of a parameter, with which points then yield
+// gray values as the temperature at the start, and as the factor of a parameter, with which points
+// then yield
 TEST(Values, HistoryAndParameters)
 {
   const ScratchFile file("ramp.pgm", pgm(Pixels(8, 8, 1, [](int i, int j, int) {
@@ -560,8 +563,9 @@ TEST(Values, HistoryAndParameters)
 
 // ---------------------------------------------------------------- physics
 
-// conductivities of a picture: points of two types with a material each; layers along and across the heat, and a
-// checkerboard, which conducts as the root of the product (J. B. Keller, J. Math. Phys. 5 (1964) 548)
+// conductivities of a picture: points of two types with a material each; layers along and across
+// the heat, and a checkerboard, which conducts as the root of the product (J. B. Keller, J. Math.
+// Phys. 5 (1964) 548)
 double conductivity(const std::string &file, int n, const std::string &shape = "quadratic")
 {
   Scene run(plane("lj", "f f", "0 1 0 1", 2, 0.1 / n) +
@@ -578,8 +582,8 @@ double conductivity(const std::string &file, int n, const std::string &shape = "
   return flows[0];
 }
 
-// functions that end at faces of cells know the layers on both sides apart, and are exact; wider ones have the mean of
-// both in the cells at the interface, which is an error of first order
+// functions that end at faces of cells know the layers on both sides apart, and are exact; wider
+// ones have the mean of both in the cells at the interface, which is an error of first order
 SERIAL_TEST(Conduction, Laminates)
 {
   double error[2];

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 // mpi: 1 4
@@ -69,8 +69,8 @@ SERIAL_TEST(Relax, VolumesOfADiskAreEqual)
   EXPECT_LT(before, 0.05);
 }
 
-// the outer points are a layer: none is closer to the surface than 0.35 of the spacing, where the parts of cells are as
-// close as 0.07, and their distances scatter by less than 0.05
+// the outer points are a layer: none is closer to the surface than 0.35 of the spacing, where the
+// parts of cells are as close as 0.07, and their distances scatter by less than 0.05
 TEST(Relax, PointsFollowTheSurface)
 {
   const auto closest = [](const std::string &how, double &scatter) {
@@ -108,7 +108,8 @@ TEST(Relax, BlocksOfWholeCellsStay)
   }
 }
 
-// across a periodic face points keep their distance, also in a box of three sites; the two rows of a band of 2.6 spacings are equal
+// across a periodic face points keep their distance, also in a box of three sites; the two rows of
+// a band of 2.6 spacings are equal
 TEST(Relax, PeriodicBand)
 {
   for (const double length : {0.3, 2.0}) {

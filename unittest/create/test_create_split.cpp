@@ -1,7 +1,7 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-// labels: unit input physics
+// labels: unit input physics ranks
 // mpi: 1 4
 
 // create_points ... split: points whose distance is a function of the place.
@@ -65,7 +65,8 @@ TEST(Split, PartsOfCellsAtAFace)
   EXPECT_NEAR(total(points), 100.0 / 256.0, 1e-14);
 }
 
-// sites that are divided at the surface follow it: the volume of a ball by the size of its points there
+// sites that are divided at the surface follow it: the volume of a ball by the size of its points
+// there
 TEST(Split, SurfaceOfABall)
 {
   const double exact = 4.0 / 3.0 * 3.14159265358979323846 * 0.4 * 0.4 * 0.4;
@@ -99,7 +100,8 @@ TEST(Split, IsTheSameOnAllRanks)
   EXPECT_TRUE(identical(one.gather(), all.gather()));
 }
 
-// a free bar that swings in its first mode: what is left of the velocities after a period, less what they were
+// a free bar that swings in its first mode: what is left of the velocities after a period, less
+// what they were
 double error_after_period(const std::string &n)
 {
   const int cells = 64;

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit input physics restart
 // mpi: 1 4
@@ -80,7 +80,8 @@ TEST(Dump, CompressedAndInPieces)
       1e-11);
 }
 
-// points that have left the box since the last neighbor list, and are put back into it, keep the places that they have without periods
+// points that have left the box since the last neighbor list, and are put back into it, keep the
+// places that they have without periods
 TEST(Dump, PointsOnTheirWayThroughAPeriodicFace)
 {
   const ScratchFile file("state.vtp");

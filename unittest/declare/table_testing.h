@@ -32,8 +32,8 @@ inline std::string text_of_file(const std::string &path)
   return text.str();
 }
 
-/** Expects the folder doc/src/name to have exactly these files. wanted: contents by file name. If MPM_WRITE
- *  is set, writes files that differ and removes files that are not wanted. */
+/** Expects the folder doc/src/name to have exactly these files. wanted: contents by file name. If
+ *  MPM_WRITE is set, writes files that differ and removes files that are not wanted. */
 inline void expect_up_to_date(const std::string &name,
                               const std::map<std::string, std::string> &wanted)
 {

@@ -6,7 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Declared options: reading, messages, refusals, comparison with a restart file, text for the manual.
+// Declared options: reading, messages, refusals, comparison with a restart file, text for the
+// manual.
 
 #include "declare/option_manual.h"
 

@@ -31,7 +31,7 @@
 #include "heat/fix_mpm_heat.h"
 #include "implicit/fix_mpm_deform.h"
 #include "implicit/fix_mpm_relax.h"
-#include "implicit/mpm_implicit.h"
+#include "implicit/mpm_implicit_options.h"
 #include "loads/fix_mpm_absorb.h"
 #include "loads/fix_mpm_dashpot.h"
 #include "loads/fix_mpm_emit.h"

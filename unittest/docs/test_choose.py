@@ -68,12 +68,14 @@ def test_flow_between_plates():
 
 
 def test_water_in_a_tank():
+    mt.long_case()
     # 0.54775 with quadratic functions and a spacing of 1/80, 0.54792 with 1/40
     check("tank", "swing", 0.5478, ["--error", "0.003", "--try", "quadratic apic usl updated", "--try",
                                     "cubic apic usl updated"])
 
 
 def test_block_that_is_pulled_apart():
+    mt.long_case()
     # 0.310573 with quadratic functions and a spacing of 1/64, 0.310555 with 1/32
     check("block", "longest", 0.31058, ["--error", "0.00004", "--levels", "2", "--try", "quadratic apic usl updated",
                                         "--try", "linear flip 1.0 musl total", "--try", "cubic apic usl updated"])

@@ -42,6 +42,7 @@ for _path in docs_scenes.pages():
 
 
 def test_complete_scenes_run():
+    mt.long_case()
     scenes = [(path, scene) for path in docs_scenes.pages()
               for scene in docs_scenes.complete_scenes(path)]
     assert scenes, "no complete scene in the manual"

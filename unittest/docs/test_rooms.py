@@ -17,7 +17,6 @@ SOURCES = os.path.join(mt.ROOT, "src", "MPM")
 
 # upward includes that are allowed: file and room that it includes, and the reason
 EXCEPTIONS = {
-    ("law/law.h", "material"): "written before there were rooms",
 }
 
 

@@ -1,9 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// Bending of surfaces of triangles and of lines: energies of cylinders and spheres, and what rotations do.
+// Bending of surfaces of triangles and of lines: energies of cylinders and spheres, and what
+// rotations do.
 
 #include "math/matrix.h"
 #include "mesh/bending.h"
@@ -25,7 +26,8 @@ namespace {
 
 using Place = std::array<double, 3>;
 
-/** n x n pairs of triangles in a square of edge 1, every other pair with the other diagonal if alternate, inner nodes moved by up to a part of the spacing. */
+/** n x n pairs of triangles in a square of edge 1, every other pair with the other diagonal if
+ *  alternate, inner nodes moved by up to a part of the spacing. */
 Mesh sheet(int n, double disorder, bool alternate = true)
 {
   Mesh mesh;
@@ -94,8 +96,9 @@ Place turned(const Place &x)
 
 }    // namespace
 
-// a square that is rolled to a cylinder of radius 2, along and across the mesh: D/2 k^2 per area, whatever Poisson's ratio, on regular and on
-// irregular meshes with diagonals that change direction. Chords are shorter than arcs, by second order
+// a square that is rolled to a cylinder of radius 2, along and across the mesh: D/2 k^2 per area,
+// whatever Poisson's ratio, on regular and on irregular meshes with diagonals that change
+// direction. Chords are shorter than arcs, by second order
 TEST(Bending, Cylinders)
 {
   const double k = 0.5;
@@ -117,8 +120,9 @@ TEST(Bending, Cylinders)
     }
 }
 
-// curvature along both axes, a saddle, and twist: D (1 + nu) k^2, D (1 - nu) k^2, and the latter, and what a plate between free rims does, exact also where nodes are
-// moved, and where diagonals change direction; with both, some nodes lie near a conic, and tell less
+// curvature along both axes, a saddle, and twist: D (1 + nu) k^2, D (1 - nu) k^2, and the latter,
+// and what a plate between free rims does, exact also where nodes are moved, and where diagonals
+// change direction; with both, some nodes lie near a conic, and tell less
 TEST(Bending, PoissonsRatio)
 {
   const double k = 1e-6, nu = 0.3;
@@ -142,7 +146,8 @@ TEST(Bending, PoissonsRatio)
       }
 }
 
-// a plate one square wide, whose nodes do not tell how it bends across, has no moment there, so that its stiffness is E I, not D
+// a plate one square wide, whose nodes do not tell how it bends across, has no moment there, so
+// that its stiffness is E I, not D
 TEST(Bending, NarrowStrip)
 {
   const double k = 1e-6, nu = 0.3;
@@ -162,7 +167,8 @@ TEST(Bending, NarrowStrip)
   EXPECT_NEAR((of_length(10) - of_length(6)) / (0.5 * k * k * (1.0 - nu * nu) * 4.0), 1.0, 1e-6);
 }
 
-// Short waves resist: the energy of a wave along the diagonals, which is 0.80 of the exact one by curvatures alone, is more, and less so as it gets longer. Surfaces of third order have none, on
+// Short waves resist: the energy of a wave along the diagonals, which is 0.80 of the exact one by
+// curvatures alone, is more, and less so as it gets longer. Surfaces of third order have none, on
 // irregular meshes, too, nor has what lies at a rim
 TEST(Bending, ShortWaves)
 {
@@ -227,8 +233,9 @@ TEST(Bending, ShortWaves)
 
 namespace {
 
-/** Waves of twelve and six edges, in directions in degrees, must have their exact energy within 3 and 8 % where it is that of all rows, and less than these parts by mean
- *  curvatures alone, also where nodes are moved. */
+/** Waves of twelve and six edges, in directions in degrees, must have their exact energy within 3
+ *  and 8 % where it is that of all rows, and less than these parts by mean curvatures alone, also
+ *  where nodes are moved. */
 void expect_waves(bool alternate, bool linear, int rows, const std::vector<double> &directions,
                   double most_of_12, double most_of_6)
 {
@@ -287,7 +294,8 @@ TEST(Bending, WavesWhereDiagonalsChangeDirection)
   expect_waves(true, false, 7, {0.0, 30.0, 45.0}, 0.97, 0.88);
 }
 
-// short waves end at creases, as curvatures do, and rotations of a surface that is bent at rest do not make any
+// short waves end at creases, as curvatures do, and rotations of a surface that is bent at rest do
+// not make any
 TEST(Bending, ShortWavesOfSurfacesThatAreNotPlane)
 {
   for (const int kind : {0, 1, 2, 3}) {
@@ -321,7 +329,8 @@ TEST(Bending, ShortWavesOfSurfacesThatAreNotPlane)
   }
 }
 
-// no row of the stiffness of a patch has a larger sum than the bound says, so that no mode of a free plate is faster: the highest one is not much slower, either
+// no row of the stiffness of a patch has a larger sum than the bound says, so that no mode of a
+// free plate is faster: the highest one is not much slower, either
 TEST(Bending, BoundOfFrequencies)
 {
   for (const bool alternate : {false, true})
@@ -405,7 +414,8 @@ TEST(Bending, Creases)
   EXPECT_LT(far, 1e-28);
 }
 
-// forces are minus the gradient of the energy, of a patch that is curved at rest, with rims of which slopes are known and without, and of lines
+// forces are minus the gradient of the energy, of a patch that is curved at rest, with rims of
+// which slopes are known and without, and of lines
 TEST(Bending, ForcesAreTheGradientOfEnergy)
 {
   const double X[PATCH_NODES][3] = {{0, 0, 0},         {1, 0.1, 0},        {0.2, 1, 0.1},
@@ -500,8 +510,8 @@ TEST(Bending, Arc)
   EXPECT_NEAR(sum / (3.0 / (2.0 * 0.1 * n) * (n - 1) / n), 1.0, 1e-12);
 }
 
-// two triangles that are folded along their edge, turned, and strained alike have the energy of their strains, and where these differ less, as
-// a third of each shares the mean
+// two triangles that are folded along their edge, turned, and strained alike have the energy of
+// their strains, and where these differ less, as a third of each shares the mean
 TEST(SharedStrain, EnergyAndForces)
 {
   const double X[4][3] = {{0, 0, 0}, {1, 0.2, 0}, {0.4, 0.9, 0}, {0.5, -0.6, 0.2}};

@@ -1,9 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// Surfaces that are curved between the nodes of triangles and lines: volumes and areas of spheres, cylinders, and boxes, and gradients.
+// Surfaces that are curved between the nodes of triangles and lines: volumes and areas of spheres,
+// cylinders, and boxes, and gradients.
 
 #include "math/matrix.h"
 #include "mesh/curved_surface.h"
@@ -102,7 +103,8 @@ Mesh octahedron(int divisions, bool round)
 
 }    // namespace
 
-// a sphere: errors of the triangles are of second order, those of the curved surface less than a tenth and a twentieth, and of higher order
+// a sphere: errors of the triangles are of second order, those of the curved surface less than a
+// tenth and a twentieth, and of higher order
 TEST(CurvedSurface, Spheres)
 {
   double error[3][2];

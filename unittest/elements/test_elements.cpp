@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 3
@@ -22,7 +22,8 @@ std::string gmsh(int nnode, const std::string &nodes, int nelement, const std::s
 }
 
 /** A rectangle or box of n[0] x n[1] (x n[2]) cells with edges l, lower corner 0: quadrangles or
- *  hexahedra, or these cut into triangles or tetrahedra. skew: displacement of inner nodes in cells. */
+ *  hexahedra, or these cut into triangles or tetrahedra. skew: displacement of inner nodes in
+ *  cells. */
 std::string box_mesh(int dim, const int *n, const double *l, bool simplices, double skew)
 {
   const int nz = dim == 3 ? n[2] : 0, sx = 1, sy = n[0] + 1, sz = sy * (n[1] + 1);
@@ -165,8 +166,9 @@ double sum_over_ranks(double x)
 
 }    // namespace
 
-// Volume and mass, and the patch test: with an affine deformation forces on inner nodes vanish on an
-// irregular mesh, each node has F and the stress of the law, and the stored energy is that of the law
+// Volume and mass, and the patch test: with an affine deformation forces on inner nodes vanish on
+// an irregular mesh, each node has F and the stress of the law, and the stored energy is that of
+// the law
 TEST(Elements, Patch)
 {
   for (const auto &kind : kinds) {
@@ -226,9 +228,10 @@ TEST(Elements, Patch)
   }
 }
 
-// A square between two planes of symmetry, pulled at its other sides, on lattices with cells as large as its elements, half of that, and less. Regions hold
-// the nodes of elements in their surfaces as faces of the box do. Nodes of the lattice inside, one by one, let them creep: stresses were
-// twice as large with coarse cells, and none with fine ones
+// A square between two planes of symmetry, pulled at its other sides, on lattices with cells as
+// large as its elements, half of that, and less. Regions hold the nodes of elements in their
+// surfaces as faces of the box do. Nodes of the lattice inside, one by one, let them creep:
+// stresses were twice as large with coarse cells, and none with fine ones
 SERIAL_TEST(Elements, RegionsHoldThemAsFacesDo)
 {
   const double pull = 0.01, E = 1000.0, nu = 0.3;
@@ -269,7 +272,8 @@ SERIAL_TEST(Elements, RegionsHoldThemAsFacesDo)
     }
 }
 
-// Nodes of elements are farther apart than nodes of the lattice: nothing comes apart, as it does without the elements
+// Nodes of elements are farther apart than nodes of the lattice: nothing comes apart, as it does
+// without the elements
 SERIAL_TEST(Elements, DoNotComeApart)
 {
   const int n[3] = {4, 4, 0};
@@ -351,8 +355,8 @@ SERIAL_TEST(Elements, FreeFlight)
     }
 }
 
-// a spinning elastic block keeps momentum, and angular momentum and energy nearly; the ledger closes,
-// and its integration entry decreases with the time step
+// a spinning elastic block keeps momentum, and angular momentum and energy nearly; the ledger
+// closes, and its integration entry decreases with the time step
 SERIAL_TEST(Elements, Spin)
 {
   for (const char *locking : {"", " locking fbar"}) {
@@ -393,8 +397,8 @@ run 0
 
 /* ----------------------------------------------------------------------
    D2: cantilever 4 m x 1 m, plane strain, gravity 10 applied suddenly. Finite elements of the same
-   kind without a lattice (quadrangles): the lower corner goes down by 3.2958 with 40 x 10, by 3.3027
-   with 80 x 20 elements, at t = 1.048
+   kind without a lattice (quadrangles): the lower corner goes down by 3.2958 with 40 x 10, by
+   3.3027 with 80 x 20 elements, at t = 1.048
 ------------------------------------------------------------------------- */
 
 static double beam(int ny, double h, bool simplices, const char *locking, double &t_lowest)
@@ -451,7 +455,8 @@ SERIAL_TEST(Elements, Cantilever)
   EXPECT_NEAR((-3.305 - more) / (-3.305 - few), 0.25, 0.08);
 }
 
-// nodes in contact with grains are as large as the square or cube of their volume, unless told otherwise
+// nodes in contact with grains are as large as the square or cube of their volume, unless told
+// otherwise
 TEST(Elements, Diameter)
 {
   for (const auto &kind : kinds) {
@@ -554,9 +559,9 @@ timestep 0.01
   EXPECT_NEAR(rebound[1], rebound[0], 0.1);
 }
 
-// A body too heavy to be stopped is sheared: past yield, the shear stress rises with the plastic strain of
-// all steps before, t = (s_y + H e)/sqrt(3) with e = (g - t/G)/sqrt(3). The heat of a step is its own plastic work, and
-// nothing of the step before.
+// A body too heavy to be stopped is sheared: past yield, the shear stress rises with the plastic
+// strain of all steps before, t = (s_y + H e)/sqrt(3) with e = (g - t/G)/sqrt(3). The heat of a
+// step is its own plastic work, and nothing of the step before.
 TEST(Elements, HardeningIsRemembered)
 {
   const double G = 10.0, sy = 0.05, H = 3.0, g = 0.1;

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -83,7 +83,8 @@ void make_sheet(std::vector<std::array<double, 3>> &nodes, std::vector<std::arra
 
 }    // namespace
 
-// above a plane the energy is that of the height, wherever edges and nodes are, and over a ridge that of the distance; in 2d so, too
+// above a plane the energy is that of the height, wherever edges and nodes are, and over a ridge
+// that of the distance; in 2d so, too
 TEST(FaceContact, IsThatOfTheDistanceOnce)
 {
   std::vector<std::array<double, 3>> nodes;
@@ -107,7 +108,8 @@ TEST(FaceContact, IsThatOfTheDistanceOnce)
               0.5 * std::pow(D - std::hypot(0.1, 0.5), 2), 1e-12);
 }
 
-// it has no jump anywhere around a bent surface, inside of folds neither: steps of 1e-4 change it by no more than the force of some faces
+// it has no jump anywhere around a bent surface, inside of folds neither: steps of 1e-4 change it
+// by no more than the force of some faces
 TEST(FaceContact, HasNoJumps)
 {
   std::vector<std::array<double, 3>> nodes;

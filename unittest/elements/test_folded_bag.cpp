@@ -1,12 +1,13 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
 // timeout: 300
 
-// A folded bag in 2d, without a lattice, that a gas blows up: its layers part without passing each other, the energy of the gas is found
-// again, the shape is that of a bag which was never folded, and it pushes a body on a lattice.
+// A folded bag in 2d, without a lattice, that a gas blows up: its layers part without passing each
+// other, the energy of the gas is found again, the shape is that of a bag which was never folded,
+// and it pushes a body on a lattice.
 
 #include "elements/thin_testing.h"
 #include "error.h"
@@ -17,7 +18,8 @@ namespace {
 
 constexpr double A = 0.01, GAP = 1.1 * A, WIDTH = 0.2, THICK = 4.0e-4, R_GAS = 287.0;
 
-/** Half of a sheet of the bag, at a distance to the left of its middle line: out along the bottom, back, and out again. */
+/** Half of a sheet of the bag, at a distance to the left of its middle line: out along the bottom,
+ *  back, and out again. */
 std::vector<Node> half_sheet(double offset)
 {
   const int N = 200;
@@ -35,7 +37,8 @@ std::vector<Node> half_sheet(double offset)
   return line;
 }
 
-/** Nodes of a bag whose sides are folded twice, in order around it; each side has three panels of two layers. */
+/** Nodes of a bag whose sides are folded twice, in order around it; each side has three panels of
+ *  two layers. */
 std::vector<Node> folded()
 {
   auto line = half_sheet(-0.5 * GAP);
@@ -126,8 +129,8 @@ int crossings(Scene &run, int n)
 
 }    // namespace
 
-// 4 kg/s of gas come in, and the drag of the air outside takes energy: work of the gas = what it has lost, and = kinetic + stored + drag.
-// Without contact (k = 0) layers pass each other
+// 4 kg/s of gas come in, and the drag of the air outside takes energy: work of the gas = what it
+// has lost, and = kinetic + stored + drag. Without contact (k = 0) layers pass each other
 SERIAL_TEST(FoldedBag, Unfolds)
 {
   const auto x = folded();
@@ -167,7 +170,8 @@ SERIAL_TEST(FoldedBag, Unfolds)
   }
 }
 
-// with a gas of constant temperature, the bag that was folded and one that was not come to rest with the same volume and pressure, and round
+// with a gas of constant temperature, the bag that was folded and one that was not come to rest
+// with the same volume and pressure, and round
 SERIAL_TEST(FoldedBag, HasTheShapeOfOneThatWasNotFolded)
 {
   const auto x = folded();
@@ -199,8 +203,9 @@ SERIAL_TEST(FoldedBag, HasTheShapeOfOneThatWasNotFolded)
   EXPECT_NEAR(measured("pressure/that without folds", pressure[1] / pressure[0]), 1.0, 0.005);
 }
 
-// a blown up bag and a soft body on a lattice that hits it: momentum goes from one to the other; the ledger of the lattices has
-// nothing of the bag, and is balanced; together with the energy of bag and gas, nothing is lost but what transfers take
+// a blown up bag and a soft body on a lattice that hits it: momentum goes from one to the other;
+// the ledger of the lattices has nothing of the bag, and is balanced; together with the energy of
+// bag and gas, nothing is lost but what transfers take
 TEST(FoldedBag, PushesABody)
 {
   const auto x = in_a_circle(folded());
@@ -247,7 +252,8 @@ SERIAL_TEST(FoldedBag, LargeStepsAreReported)
   EXPECT_EQ(run.lmp->error->get_numwarn(), 0);
 }
 
-// pairs of nodes of the bag are wanted: there is no advice to exclude them where there are many points
+// pairs of nodes of the bag are wanted: there is no advice to exclude them where there are many
+// points
 SERIAL_TEST(FoldedBag, NeedsPairsOfItsNodes)
 {
   ScratchFile file("round.msh", mesh_of(in_a_circle(folded())));
@@ -259,8 +265,8 @@ SERIAL_TEST(FoldedBag, NeedsPairsOfItsNodes)
   EXPECT_EQ(run.lmp->error->get_numwarn(), 0);
 }
 
-// a strip of metal without a lattice flies apart, and yields: what it spends is in fix mpm/elements and in restart files, and not in the ledger of
-// a lattice
+// a strip of metal without a lattice flies apart, and yields: what it spends is in fix mpm/elements
+// and in restart files, and not in the ledger of a lattice
 TEST(FoldedBag, StripThatYields)
 {
   std::vector<Node> x;

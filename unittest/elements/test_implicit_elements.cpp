@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi input
 // mpi: 1 4
@@ -14,8 +14,8 @@ using namespace MPM_TEST;
 
 namespace {
 
-/** Two bars of half span 1 that rise by a, of EA = 1e4: benchmark P6. Bars of neohookean have the force EA (l - 1/l)/2 for the stretch l, of
- *  corotated that of the benchmark, EA (l - 1). */
+/** Two bars of half span 1 that rise by a, of EA = 1e4: benchmark P6. Bars of neohookean have the
+ *  force EA (l - 1/l)/2 for the stretch l, of corotated that of the benchmark, EA (l - 1). */
 std::string truss(double a, const ScratchFile &file, const std::string &law,
                   const std::string &options)
 {
@@ -45,7 +45,8 @@ double bears(double a, double w, const std::string &law)
 
 }    // namespace
 
-// pushed down by a wall the force has its maximum; under a load that grows the truss jumps to the other side
+// pushed down by a wall the force has its maximum; under a load that grows the truss jumps to the
+// other side
 SERIAL_TEST(Truss, SnapsThrough)
 {
   struct Case {
@@ -170,8 +171,9 @@ SERIAL_TEST(Balloon, IsBlownUp)
   EXPECT_LT(measured("sphericity", run.compute_scalar("most") / r - 1.0), 0.01);
 }
 
-// a cable between two clamps (H.M. Irvine, Cable Structures (1981)), sag .39978: it swings to rest in steps of backward Euler, and is then in
-// equilibrium. Two straight halves without tension have no stiffness across them, which is an error in statics, and no equilibrium
+// a cable between two clamps (H.M. Irvine, Cable Structures (1981)), sag .39978: it swings to rest
+// in steps of backward Euler, and is then in equilibrium. Two straight halves without tension have
+// no stiffness across them, which is an error in statics, and no equilibrium
 SERIAL_TEST(Cable, IsACatenary)
 {
   const double h = 0.02;

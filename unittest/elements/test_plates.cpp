@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 
-// Plates, shells, and soap films of fix mpm/elements whose nodes are free, without a lattice: benchmark R5. Loads on plates are small, and a damped motion
-// ends in equilibrium.
+// Plates, shells, and soap films of fix mpm/elements whose nodes are free, without a lattice:
+// benchmark R5. Loads on plates are small, and a damped motion ends in equilibrium.
 
 #include "elements/fix_mpm_elements.h"
 #include "elements/thin_testing.h"
@@ -22,7 +22,8 @@ struct Plate {
   std::string bending = "yes";
 };
 
-/** n x m pairs of triangles whose diagonals are parallel or change direction from one to the next; place(u, v) for u and v from 0 to 1. */
+/** n x m pairs of triangles whose diagonals are parallel or change direction from one to the next;
+ *  place(u, v) for u and v from 0 to 1. */
 template <class Place> Plate sheet_of(int n, int m, const Place &place, bool alternate = false)
 {
   Plate body;
@@ -115,7 +116,8 @@ std::string scene(const Plate &body, const ScratchFile &file, double room = 0.1)
       "\nfix dt all mpm/dt 0.9\n";
 }
 
-/** The value of compute w in equilibrium; last: what defines it, and constraints. The lowest mode, of angular frequency omega, has 0.8 of critical damping. */
+/** The value of compute w in equilibrium; last: what defines it, and constraints. The lowest mode,
+ *  of angular frequency omega, has 0.8 of critical damping. */
 double in_equilibrium(const Plate &body, double omega, const std::string &load,
                       const std::string &last)
 {
@@ -131,7 +133,8 @@ double in_equilibrium(const Plate &body, double omega, const std::string &load,
 
 }    // namespace
 
-// D w'''' = q: strips that are clamped and simply supported. Two nodes make a clamp, which is halfway between them
+// D w'''' = q: strips that are clamped and simply supported. Two nodes make a clamp, which is
+// halfway between them
 SERIAL_TEST(Bending, Strips)
 {
   const double E = 1e6, t = 0.05, D = E * t * t * t / 12.0;
@@ -170,7 +173,8 @@ SERIAL_TEST(Bending, Strips)
   }
 }
 
-// q a^4/64 D, clamped halfway between the inner two of three rings of nodes; the lowest frequency of that plate, 10.21583 sqrt(D/rho t)/a^2
+// q a^4/64 D, clamped halfway between the inner two of three rings of nodes; the lowest frequency
+// of that plate, 10.21583 sqrt(D/rho t)/a^2
 SERIAL_TEST(Bending, ClampedCircularPlate)
 {
   for (const int n : {6, 12}) {
@@ -210,7 +214,8 @@ SERIAL_TEST(Bending, ClampedCircularPlate)
   }
 }
 
-// a square on supports, 0.00406235 q L^4/D, whose diagonals are parallel or change direction from square to square
+// a square on supports, 0.00406235 q L^4/D, whose diagonals are parallel or change direction from
+// square to square
 SERIAL_TEST(Bending, SupportedSquare)
 {
   const struct {
@@ -244,8 +249,9 @@ SERIAL_TEST(Bending, SupportedSquare)
   }
 }
 
-// a clamped square, 0.00126532 q L^4/D, with 21 edges from clamp to clamp, which are halfway between the inner two of three rows of nodes that are held: short waves find
-// resistance at a clamp, where the curvature jumps, and more of it where diagonals change direction
+// a clamped square, 0.00126532 q L^4/D, with 21 edges from clamp to clamp, which are halfway
+// between the inner two of three rows of nodes that are held: short waves find resistance at a
+// clamp, where the curvature jumps, and more of it where diagonals change direction
 SERIAL_TEST(Bending, ClampedSquare)
 {
   for (const bool alternate : {false, true}) {
@@ -273,7 +279,8 @@ SERIAL_TEST(Bending, ClampedSquare)
   }
 }
 
-// a free square plate, 13.468 sqrt(D/rho t)/a^2 (nu = 0.3: A.W. Leissa, Vibration of Plates, NASA SP-160 (1969), chapter 4), in four periods, with its energy
+// a free square plate, 13.468 sqrt(D/rho t)/a^2 (nu = 0.3: A.W. Leissa, Vibration of Plates, NASA
+// SP-160 (1969), chapter 4), in four periods, with its energy
 SERIAL_TEST(Bending, FreeSquare)
 {
   double error[2];
@@ -319,7 +326,8 @@ SERIAL_TEST(Bending, FreeSquare)
   EXPECT_LT(std::fabs(error[1]), 0.4 * std::fabs(error[0]));
 }
 
-// two pairs of opposite forces of 2 on the rim of a closed hemisphere: 0.0924 (R 10, t 0.04, E 6.825e7)
+// two pairs of opposite forces of 2 on the rim of a closed hemisphere: 0.0924 (R 10, t 0.04, E
+// 6.825e7)
 SERIAL_TEST(Bending, PinchedHemisphere)
 {
   for (const int divisions : {2, 3}) {
@@ -346,8 +354,9 @@ SERIAL_TEST(Bending, PinchedHemisphere)
   }
 }
 
-// two opposite forces on single nodes of a cylinder between rigid diaphragms: 1.8248e-5 for a force of 1 (R 300, length 600, t 3, E 3e6), with equal squares, twice as large as
-// the dent that is sqrt(R t) wide, whose diagonals are parallel or change direction
+// two opposite forces on single nodes of a cylinder between rigid diaphragms: 1.8248e-5 for a force
+// of 1 (R 300, length 600, t 3, E 3e6), with equal squares, twice as large as the dent that is
+// sqrt(R t) wide, whose diagonals are parallel or change direction
 SERIAL_TEST(Bending, PinchedCylinder)
 {
   const int around = 32, rows = 10;
@@ -421,7 +430,8 @@ SERIAL_TEST(Bending, ForceOnOneNode)
   }
 }
 
-// the Scordelis-Lo roof under a hundredth of its weight on rigid diaphragms, 0.3024 for all of it in the middle of its free edges
+// the Scordelis-Lo roof under a hundredth of its weight on rigid diaphragms, 0.3024 for all of it
+// in the middle of its free edges
 SERIAL_TEST(Bending, ScordelisLoRoof)
 {
   double w[2];
@@ -469,7 +479,8 @@ SERIAL_TEST(Bending, WarnsOfRoughMeshes)
   EXPECT_EQ(warnings(1, 0.5), 1u);
 }
 
-// a strip of lines rolled to half a circle without being stretched has the energy of bending alone, D angle^2/2 l for each corner, and no stress
+// a strip of lines rolled to half a circle without being stretched has the energy of bending alone,
+// D angle^2/2 l for each corner, and no stress
 SERIAL_TEST(Bending, RolledStripHasNoMembraneStress)
 {
   const int n = 20;
@@ -510,7 +521,8 @@ SERIAL_TEST(Bending, RolledStripHasNoMembraneStress)
 
 namespace {
 
-/** Neck of a sheet between two rings of radius 1, 2 h apart, that is stretched from a cylinder whose length over its diameter is ratio, 8 times as small. */
+/** Neck of a sheet between two rings of radius 1, 2 h apart, that is stretched from a cylinder
+ *  whose length over its diameter is ratio, 8 times as small. */
 double neck(double h, double ratio, int rows)
 {
   const double small = 1.0 / 8.0, length = 2.0 * ratio * small;
@@ -547,9 +559,11 @@ double neck(double h, double ratio, int rows)
 
 }    // namespace
 
-// A sheet of neohookean that is stretched far has the energy of the squares of its stretches, which is least for a surface of least area where all directions are
-// stretched alike (Douglas 1931). A catenoid is so from a cylinder whose length over its diameter is h over the radius of the neck. Found by repetition this is a soap film between
-// rings of radius 1; above h = 0.6627434 there is none
+// A sheet of neohookean that is stretched far has the energy of the squares of its stretches, which
+// is least for a surface of least area where all directions are stretched alike (Douglas 1931). A
+// catenoid is so from a cylinder whose length over its diameter is h over the radius of the neck.
+// Found by repetition this is a soap film between rings of radius 1; above h = 0.6627434 there is
+// none
 SERIAL_TEST(ThinElements, SoapFilm)
 {
   EXPECT_NEAR(measured("neck for h = 0.5, 6 rows", neck(0.5, 0.5 / 0.848338, 6) / 0.848338), 1.0,

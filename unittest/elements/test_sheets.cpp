@@ -1,12 +1,13 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-// labels: physics mpi restart input
+// labels: physics mpi restart input ranks
 // mpi: 1 4
 // timeout: 300
 
-// Surfaces and lines without a lattice, moved by fix nve, which touch themselves by pair style mpm/sheet: folds part, and layers do not
-// pass each other. Values of sections R and V of the benchmarks.
+// Surfaces and lines without a lattice, moved by fix nve, which touch themselves by pair style
+// mpm/sheet: folds part, and layers do not pass each other. Values of sections R and V of the
+// benchmarks.
 
 #include "elements/fix_mpm_elements.h"
 #include "elements/thin_testing.h"
@@ -26,7 +27,8 @@ std::string free_body(int dim, double low, double high, double skin, const std::
       thin_body(file, thin, material, more);
 }
 
-/** A strip of n x m squares with edges a, cut in triangles, folded to layers of n squares each with a gap between them. */
+/** A strip of n x m squares with edges a, cut in triangles, folded to layers of n squares each with
+ *  a gap between them. */
 std::string folded(int layers, int n, int m, double a, double gap)
 {
   std::vector<Node> line, x;
@@ -46,9 +48,10 @@ std::string folded(int layers, int n, int m, double a, double gap)
 
 }    // namespace
 
-// R3: a chain that is folded in the middle, and released at one end, which falls faster than freely: its two arms hang beside each
-// other, closer than any lattice would let them part. x/L of the falling arm at times of sqrt(L/g), by a node five lines from its end: the very
-// end is ahead by the speed that the wave of its release, g L/c, gives it
+// R3: a chain that is folded in the middle, and released at one end, which falls faster than
+// freely: its two arms hang beside each other, closer than any lattice would let them part. x/L of
+// the falling arm at times of sqrt(L/g), by a node five lines from its end: the very end is ahead
+// by the speed that the wave of its release, g L/c, gives it
 SERIAL_TEST(Sheets, FoldedChainFallsFasterThanFreely)
 {
   const int n = 100;
@@ -78,8 +81,9 @@ SERIAL_TEST(Sheets, FoldedChainFallsFasterThanFreely)
   }
 }
 
-// a strip that lies in three layers on a table, which is its lowest one: the others stay above it under their weight, which it bears. It is
-// then lifted by its end, and unfolds. Without the pair style the layers fall through the table
+// a strip that lies in three layers on a table, which is its lowest one: the others stay above it
+// under their weight, which it bears. It is then lifted by its end, and unfolds. Without the pair
+// style the layers fall through the table
 SERIAL_TEST(Sheets, LayersDoNotPassEachOther)
 {
   const int n = 6, m = 3;
@@ -123,7 +127,8 @@ SERIAL_TEST(Sheets, LayersDoNotPassEachOther)
   }
 }
 
-// nodes of a sheet with edges below the distance leave each other alone, also where it is curved; those that a fold has brought there do not
+// nodes of a sheet with edges below the distance leave each other alone, also where it is curved;
+// those that a fold has brought there do not
 SERIAL_TEST(Sheets, NearNodesDoNotTouch)
 {
   ScratchFile file("strip.msh", folded(1, 8, 3, 0.05, 0.0));
@@ -149,8 +154,9 @@ SERIAL_TEST(Sheets, NearNodesDoNotTouch)
   }
 }
 
-// V4: a bag between two plates, of lines that hardly stretch, with a gas of 1.1e5 against 1e5 outside: the force on a plate when half of
-// its height is left, with the temperature or the entropy of the gas kept
+// V4: a bag between two plates, of lines that hardly stretch, with a gas of 1.1e5 against 1e5
+// outside: the force on a plate when half of its height is left, with the temperature or the
+// entropy of the gas kept
 SERIAL_TEST(Sheets, BagBetweenPlates)
 {
   const int n = 120;
@@ -196,7 +202,8 @@ TEST(Sheets, RanksAndRestart)
   }
 }
 
-// layers in the mesh that are closer than the distance are told, with the energy that pushes them apart: once, and not after a restart
+// layers in the mesh that are closer than the distance are told, with the energy that pushes them
+// apart: once, and not after a restart
 TEST(Sheets, WarnsOfLayersThatAreTooClose)
 {
   const auto warnings = [&](double gap, double k, bool again) {
@@ -240,8 +247,8 @@ SERIAL_TEST(Sheets, WarnsOfNodesAtTheSamePlace)
   }
 }
 
-// what keeps less than D from all nodes can be in the middle of a triangle where the nodes around are farther than D, also when this
-// has been stretched
+// what keeps less than D from all nodes can be in the middle of a triangle where the nodes around
+// are farther than D, also when this has been stretched
 TEST(Sheets, WarnsOfMeshesThatAreTooCoarse)
 {
   const double a = 0.05;
@@ -276,7 +283,8 @@ TEST(Sheets, WarnsOfMeshesThatAreTooCoarse)
   }
 }
 
-// a sheet whose nodes are over the middles of triangles of another one, which is held, and that is moved through it: told once, with the node, the element, and its fix. Not told: away from it, and
+// a sheet whose nodes are over the middles of triangles of another one, which is held, and that is
+// moved through it: told once, with the node, the element, and its fix. Not told: away from it, and
 // around its rim to the other side
 TEST(Sheets, WarnsOfNodesThatGoThrough)
 {
@@ -321,8 +329,9 @@ TEST(Sheets, WarnsOfNodesThatGoThrough)
               z < 0.0 ? 1u : 0u);
 }
 
-// two sheets of triangles in no order, with a distance of a fifth of an edge, that come together with up to 0.4 of it in a step: none of their nodes goes through, which those that
-// touch nodes only do at once; momentum is kept, and energy the better the shorter the steps, by their square
+// two sheets of triangles in no order, with a distance of a fifth of an edge, that come together
+// with up to 0.4 of it in a step: none of their nodes goes through, which those that touch nodes
+// only do at once; momentum is kept, and energy the better the shorter the steps, by their square
 TEST(Sheets, FacesHoldNodes)
 {
   const double a = 0.05, D = 0.01, dt = 1e-4, h = 1.2 * D,
@@ -394,7 +403,8 @@ TEST(Sheets, FacesHoldNodes)
   EXPECT_LT(std::fabs(change[1]), 0.003);
   EXPECT_NEAR(change[0] / change[1], 4.0, 1.0);
 
-  // a stiffness that lets nodes go through by less than the distance and the skin: they come back, and all of the sheets is apart again, as is told
+  // a stiffness that lets nodes go through by less than the distance and the skin: they come back,
+  // and all of the sheets is apart again, as is told
 
   const std::string weak = scene(20.0, dt, "faces yes", 0.1);
   EXPECT_EQ(lines_that_say(weak + "run 60\nrun 0\n", words).size(), 1u);
@@ -402,7 +412,8 @@ TEST(Sheets, FacesHoldNodes)
   EXPECT_LT(run.evaluate("v_l"), 0.8 * -20.0);
   EXPECT_EQ(run.evaluate("pe"), 0.0);
 
-  // flat sheets that are moved into each other: above and below, each contact has the energy of its distance on its side, and a little less next to rims
+  // flat sheets that are moved into each other: above and below, each contact has the energy of its
+  // distance on its side, and a little less next to rims
 
   Scene moved(scene(1.0, dt, "faces yes") +
               "unfix n\ncompute touch all pair mpm/sheet\nthermo_style custom step pe c_touch[1]\n"

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_THIN_TESTING_H
 #define MPM_THIN_TESTING_H
@@ -12,7 +12,8 @@ namespace MPM_TEST {
 
 using Node = std::array<double, 3>;
 
-/** A mesh file of Gmsh with elements of one kind: 1 for lines, 2 for triangles, 3 for quadrangles. */
+/** A mesh file of Gmsh with elements of one kind: 1 for lines, 2 for triangles, 3 for
+ *  quadrangles. */
 inline std::string gmsh(int kind, const std::vector<Node> &nodes,
                         const std::vector<std::vector<int>> &elements)
 {
@@ -29,8 +30,8 @@ inline std::string gmsh(int kind, const std::vector<Node> &nodes,
   return text + "$EndElements\n";
 }
 
-/** Mesh of a cable of length 1 with n lines: two straight halves that hang between x = 0 and x = span.
- *  up: vertical axis, 1 or 2. */
+/** Mesh of a cable of length 1 with n lines: two straight halves that hang between x = 0 and x =
+ *  span. up: vertical axis, 1 or 2. */
 inline std::string hanging(int n, double span, int up)
 {
   std::vector<Node> nodes;
@@ -74,8 +75,8 @@ inline std::string box(int dim, double low, double high, double h, const std::st
       "\ncreate_box 1 box\n" + strprintf("fix grid all mpm %g ", h) + options + "\n";
 }
 
-/** Input of a body from a mesh file. thin: words after the file name, such as the thickness; material:
- *  after its density of 1000; more: options of fix mpm/elements. */
+/** Input of a body from a mesh file. thin: words after the file name, such as the thickness;
+ *  material: after its density of 1000; more: options of fix mpm/elements. */
 inline std::string thin_body(const std::string &file, const std::string &thin,
                              const std::string &material, const std::string &more = "")
 {

@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 //
-// labels: unit physics
+// labels: unit physics ranks
 // mpi: 1 2
 
 // Each entry of the energy ledger against a closed form or a sum that the test makes itself, and the

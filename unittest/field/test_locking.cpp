@@ -100,6 +100,7 @@ TEST(CookMembrane, LocksWithoutCure)
 // as asked: 3 % at h = 1
 TEST(CookMembrane, FineIsNearTheReference)
 {
+  LONG_CASE();
   EXPECT_NEAR(cook("locking fbar", 1.0, 0.4999).u / 6.953, 1.0, 0.03);
 }
 
@@ -160,6 +161,7 @@ static double punch(const std::string &options)
 
 TEST(Punch, LimitLoad)
 {
+  LONG_CASE();
   for (const std::string shape :
        {"shape quadratic ", "shape linear transfer flip 0.99 scheme musl ",
         "shape linear transfer apic scheme musl light 0.5 "}) {
@@ -350,6 +352,7 @@ PARAMETER_TEST(Tension2d, NoFalseNeck, const char *,
 
 TEST(Tension, ResolutionsAgree)
 {
+  LONG_CASE();
   const Tension coarse = tension(2, 2.5e-4, "locking fbar"),
                 fine = tension(2, 1.25e-4, "locking fbar");
   EXPECT_NEAR(coarse.force / fine.force, 1.0, 0.015);
@@ -357,6 +360,7 @@ TEST(Tension, ResolutionsAgree)
 
 TEST(Tension, NoFalseNeckIn3d)
 {
+  LONG_CASE();
   tension(3, 2.0e-4, "locking fbar");
 }
 

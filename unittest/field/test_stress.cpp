@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: physics mpi input
+// labels: physics mpi input ranks
 // mpi: 1 3
 
 // Stress by the gradients of the shape functions together with the affine matrix of moving least

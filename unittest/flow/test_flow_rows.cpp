@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: unit mpi
+// labels: unit mpi ranks
 // mpi: 1 4
 
 // Equations of cells by lists of them: against vectors that are known, and against multigrid on the lattice.

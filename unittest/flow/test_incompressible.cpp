@@ -167,6 +167,7 @@ double error_of_profile(Scene &run, int n, const std::vector<double> &y,
 // in the same steps
 SERIAL_TEST(Vortices, DecayAsTheyShould)
 {
+  LONG_CASE();
   const int n = 64;
   struct Case {
     const char *options;
@@ -313,7 +314,7 @@ SERIAL_TEST(Plates, CouetteAndPoiseuille)
 // with the water below it and does not fall freely, wherever the surface is in a cell (but exactly in its middle, where rounding decides which cells are wet)
 SERIAL_TEST(Film, SurfaceAnywhere)
 {
-  for (const int dim : {2, 3})
+  for (const int dim : first_of(1, {2, 3}))
     for (const double H : first_of(2, {0.523, 0.5375, 0.5, 0.5125, 0.527})) {
       Scene run(box(dim, "si", dim == 3 ? "p f p" : "p f",
                     dim == 3 ? "0 0.1 0 0.7 0 0.1" : "0 0.1 0 0.7", 1, 0.02) +

@@ -1,7 +1,7 @@
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
 #
-# labels: physics
+# labels: physics long
 # sanitize: no
 # timeout: 600
 """tools/mpm_from_md.py: parameters of the Lennard-Jones solid and fluid against known values, and

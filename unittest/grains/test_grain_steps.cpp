@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: physics mpi
+// labels: physics mpi ranks
 // mpi: 1 2
 
 // Fix mpm/dt grains: the time step as a share of a collision of grains, whose duration has a closed form, for each pair

@@ -177,6 +177,7 @@ SERIAL_TEST(Brake, HeatsBothFaces)
 // what the kinetic energy loses is heat, when the pressure comes slowly, so that nothing vibrates
 PARAMETER_TEST(Energy, LostIsHeat, const char *, Values("", "separate", "slip"))
 {
+  LONG_AFTER(1);
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   Braked b = {2.0, 1e9};
   b.ramp = 0.03;
@@ -325,6 +326,7 @@ TEST(ShareOrthotropic, AgreesOnRanks)
 PARAMETER_TEST(Wall, IsInsulator, const char *,
                Values("ylo separate", "ylo slip", "region below separate"))
 {
+  LONG_AFTER(1);
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   Braked b = {4.0};
   b.wall = GetParam();
@@ -372,6 +374,7 @@ PARAMETER_TEST(Impact, OfThePushIsNoHeat, const char *, Values("ylo", "region be
 PARAMETER_TEST(Sticks, MakesNoHeat, const char *,
                Values("", "ylo separate", "region below separate"))
 {
+  LONG_AFTER(1);
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   Braked b = {2.0};
   b.wall = GetParam();
@@ -426,6 +429,7 @@ double heat(Scene &run)
 PARAMETER_TEST(Disks, AgreeOnRanksAndCloseTheLedger, const char *,
                Values("", "scheme musl", "transfer flip 0.99"))
 {
+  LONG_AFTER(1);
   std::string scene = replaced(disks, "mpm 0.5\n", strprintf("mpm 0.5 %s\n", GetParam()));
   scene = replaced(scene, "mpm 0.5\n", strprintf("mpm 0.5 %s\n", GetParam()));
   Scene start(disks + "run 0\n");

@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: physics mpi restart input
+// labels: physics mpi restart input ranks
 // mpi: 1 4
 
 // Fix mpm/heat every: conduction in fewer steps than the motion.

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_IMAGE_TESTING_H
 #define MPM_IMAGE_TESTING_H
@@ -127,7 +127,8 @@ inline std::string zlib_stored(const std::string &data)
   return out + bytes_of(b << 16 | a, true);
 }
 
-/** A PNG file. bits: per number; color: 0 gray, 2 colors, 3 palette, 4 gray with alpha; of: colors. */
+/** A PNG file. bits: per number; color: 0 gray, 2 colors, 3 palette, 4 gray with alpha; of:
+ *  colors. */
 inline std::string png(const Pixels &p, int bits = 8, int color = 0, const Palette &of = as_gray)
 {
   std::string rows, header = bytes_of((uint32_t) p.nx, true) + bytes_of((uint32_t) p.ny, true);

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -368,8 +368,9 @@ TEST(LevelSet, PlanesAreExact)
   EXPECT_NEAR(set.volume(lo, hi), 0.5 * 3.6 * 2.2 * 3.6, 2e-5);
 }
 
-// planes in parts of half a pixel and of a sixteenth have the same volume behind a curved surface, by a tenth of the
-// area between a circle and its tangents of half a pixel, 2 pi R (1/2)^2/24 R in all: values are linear along each axis
+// planes in parts of half a pixel and of a sixteenth have the same volume behind a curved surface,
+// by a tenth of the area between a circle and its tangents of half a pixel, 2 pi R (1/2)^2/24 R in
+// all: values are linear along each axis
 TEST(LevelSet, CurvedSurface)
 {
   const int64_t n[3] = {20, 20, 1};

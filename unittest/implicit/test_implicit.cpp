@@ -660,6 +660,7 @@ SERIAL_TEST(Disk, KeepsItsAngularMomentum)
 // a vibration by a third of a turn, in steps of half the length: orders one and two in time, by differences of three of these
 SERIAL_TEST(Vibration, HasTheOrderOfTheMethod)
 {
+  LONG_CASE();
   struct Case {
     const char *options, *implicit;
     double order;
@@ -828,6 +829,7 @@ SERIAL_TEST(Multigrid, SlipOnSlopes)
 // 47 iterations, and no end within minutes
 SERIAL_TEST(Multigrid, SlipOnThreeSlopes)
 {
+  LONG_CASE();
   // columns of a rotation
   const double turn[3][3] = {{0.85544984656975998, 0.44459629529311562, -0.2655930989604417},
                              {-0.374252615653694, 0.8851906773023972, 0.27635564856411371},
@@ -886,6 +888,7 @@ SERIAL_TEST(Multigrid, FacesBetweenNodes)
 // of a slender body, iterations do not grow with the number of cells
 SERIAL_TEST(Multigrid, IterationsDoNotGrow)
 {
+  LONG_CASE();
   double iterations[2];
   for (const int n : {2, 8}) {
     Scene run(beam(n, "frame total", 1e-4, "static tolerance 1e-11 solver multigrid") + "run 1\n");
@@ -1027,6 +1030,7 @@ SERIAL_TEST(Column, Buckles)
 // a thick-walled cylinder of a perfectly plastic metal: benchmark P3, plane strain, inner radius 1, outer radius 2
 SERIAL_TEST(Cylinder, BecomesPlastic)
 {
+  LONG_CASE();
   const int n = 16;
   const double h = 1.0 / n, v = 5e-5;
   Scene run(plane("si", "f p", strprintf("0 2.5 0 %.17g", 2 * h), 1, 0.3 * h) +
@@ -1134,6 +1138,7 @@ SERIAL_TEST(Sphere, BecomesPlastic)
 // at 0.978 of the limit load, c = 1.8, 10 and 20 cells give 2.8 and 2.1 % too much, and 30 are within the gate of 2 %
 SERIAL_TEST(Sphere, IsAlmostAllPlastic)
 {
+  LONG_CASE();
   for (const double h : {0.1, 1.0 / 30.0}) {
     HollowSphere sphere("", 4, h);
     sphere.load(1.110944, 5);
@@ -1146,6 +1151,7 @@ SERIAL_TEST(Sphere, IsAlmostAllPlastic)
 // the same sphere bears 2 ln(b/a) and no more, to +2 % and -1 %, with averages of the pressure
 SERIAL_TEST(Sphere, BearsTheLimitLoad)
 {
+  LONG_CASE();
   HollowSphere sphere("locking pressure", 4);
   const double limit = 2.0 * std::log(2.0);
   sphere.load(0.99 * limit, 4);
@@ -1202,6 +1208,7 @@ SERIAL_TEST(Indenter, IsInBalanceWithTheFloor)
 // finite elements of order 2, nine iterations in a step, and the same end in one load step and in two
 SERIAL_TEST(Cook, ConvergesQuadratically)
 {
+  LONG_CASE();
   const auto scene = [](double h, int steps, const char *options) {
     return plane("si", "f f", "0 60 0 90", 1, 0.4 * h) +
         strprintf("fix grid all mpm %.17g frame total\n", h) +
@@ -1261,6 +1268,7 @@ SERIAL_TEST(Cook, ConvergesQuadratically)
 // needs more points than 2 x 2 in a cell, with which w is 1.0 and u 2.1 % too large
 SERIAL_TEST(Elastica, BendsAsFarAsTheory)
 {
+  LONG_CASE();
   for (const auto &[n, ppc] : {std::pair{4, "2"}, {8, "2"}, {4, "4"}}) {
     const bool coarse = n == 4 && *ppc == '2';
     Scene run(
@@ -1282,6 +1290,7 @@ SERIAL_TEST(Elastica, BendsAsFarAsTheory)
 // points in each
 SERIAL_TEST(Elastica, FollowsItsTip)
 {
+  LONG_CASE();
   for (const auto &[n, ppc] : {std::pair{4, "2"}, {8, "2"}, {4, "4"}}) {
     const bool coarse = n == 4 && *ppc == '2';
     Scene run(elastica(n,
@@ -1309,6 +1318,7 @@ SERIAL_TEST(Elastica, FollowsItsTip)
 // is wrong is of first order, and 0.8 and 0.5 % (along, across) with 32 cells
 SERIAL_TEST(TurekHron, FlagAtRest)
 {
+  LONG_CASE();
   for (const auto &[E, along, down] : {std::array<double, 3>{1.4e6, -7.187e-3, -66.10e-3},
                                        std::array<double, 3>{5.6e6, -0.4690e-3, -16.97e-3}})
     for (const int n : {8, 16}) {
@@ -1403,6 +1413,7 @@ SERIAL_TEST(Limit, IsReported)
 // that grows it jumps from next to this to the other side, which the number of tangents that are not positive definite tells
 SERIAL_TEST(Arch, SnapsThrough)
 {
+  LONG_CASE();
   const std::string arch = plane("si", "f f", "-0.5 0.4 0 1", 1, 0.004) +
       "fix grid all mpm 0.02 frame total\nregion bar prism 0 0.08 0 1 -1 1 0.15 0 0\n"
       "create_points 1 region bar ppc 2\n"

@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: physics mpi restart
+// labels: physics mpi restart ranks
 // mpi: 1 4
 
 // Fix mpm/implicit: what steps with inertia keep for the next ones.

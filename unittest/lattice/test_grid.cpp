@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -182,7 +182,8 @@ TEST(Grid, NodesAreReachedThroughImages)
   }
 }
 
-// images beyond the reach of points are still no nodes of their own, but have no part in sums and copies
+// images beyond the reach of points are still no nodes of their own, but have no part in sums and
+// copies
 TEST(Grid, ImagesOutOfReachHaveNoPart)
 {
   for (int dim : {2, 3}) {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -58,7 +58,8 @@ template <int dim> void linear_fields_are_exact()
   }
 }
 
-/** Divergence of the interpolated velocity, by differences that are exact for quadratic functions. */
+/** Divergence of the interpolated velocity, by differences that are exact for quadratic
+ *  functions. */
 template <int dim>
 double divergence(const double *t, const std::function<double(int, const int *)> &u)
 {

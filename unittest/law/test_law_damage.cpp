@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit physics
 
@@ -622,7 +622,8 @@ TEST(GursonLaw, NoVoids)
   }
 }
 
-// what voids it had are closed by 20 to 200 times the yield stress, in one step or many; the rest is a von Mises solid
+// what voids it had are closed by 20 to 200 times the yield stress, in one step or many; the rest
+// is a von Mises solid
 TEST(GursonLaw, ShearOfClosedVoids)
 {
   const double G3 = 3 * 2e11 / 2.6;

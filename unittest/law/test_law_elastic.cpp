@@ -1,6 +1,5 @@
-// labels: unit physics
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// labels: unit physics This file is part of the MPM package for LAMMPS, distributed under the GNU
+// General Public License, version 2; see the file LICENSE.
 
 // Hyperelastic laws, isotropic and anisotropic, at a point against closed forms.
 
@@ -286,8 +285,8 @@ TEST(Hyperelastic, NeoHookeanLargeStretch)
   }
 }
 
-// Treloar's rubber by Ogden's constants: nominal stresses of Treloar's simple tension (Trans. Faraday
-// Soc. 40 (1944) 59), which the fit follows within 13 percent
+// Treloar's rubber by Ogden's constants: nominal stresses of Treloar's simple tension (Trans.
+// Faraday Soc. 40 (1944) 59), which the fit follows within 13 percent
 TEST(Hyperelastic, TreloarRubber)
 {
   const auto material =
@@ -623,8 +622,9 @@ TEST(Anisotropic, WavesAlongTheAxes)
   EXPECT_NEAR(fastest_wave(p), std::sqrt(C11 / 1600), 1e-5 * p.wave_speed());
 }
 
-// woven yarns, however taut, slack, or sheared, and with any angle between them: stress is the slope of the energy, and no wave is faster
-// than the bound, which is close when yarns are just taut
+// woven yarns, however taut, slack, or sheared, and with any angle between them: stress is the
+// slope of the energy, and no wave is faster than the bound, which is close when yarns are just
+// taut
 TEST(Anisotropic, Woven)
 {
   for (const char *more : {"", " angle 50", " angle 110 locking 20 4e7"}) {

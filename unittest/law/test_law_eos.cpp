@@ -1,6 +1,5 @@
-// labels: unit physics
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// labels: unit physics This file is part of the MPM package for LAMMPS, distributed under the GNU
+// General Public License, version 2; see the file LICENSE.
 
 // Equations of state, point by point: shock states, isentropes, detonation, tension, energy.
 
@@ -39,7 +38,8 @@ TEST(Shock, SymmetricImpactStates)
   }
 }
 
-// slow compression: the isentrope of an independent integration, below the Hugoniot, and second order
+// slow compression: the isentrope of an independent integration, below the Hugoniot, and second
+// order
 TEST(Shock, Isentrope)
 {
   const double rho = 8930, c0 = 3940, s = 1.489, g = 1.99, K = rho * c0 * c0;

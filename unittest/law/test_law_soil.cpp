@@ -1,6 +1,5 @@
-// labels: unit physics
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// labels: unit physics This file is part of the MPM package for LAMMPS, distributed under the GNU
+// General Public License, version 2; see the file LICENSE.
 
 // Laws of soil, rock and snow at a single point: strength in the tests of a soil laboratory, flow,
 // critical states, and what holds for all of them.
@@ -160,7 +159,8 @@ TEST(SoilLaws, LargeSteps)
   }
 }
 
-// batches that stay elastic as a whole go a short way: the same result as beside a point that yields
+// batches that stay elastic as a whole go a short way: the same result as beside a point that
+// yields
 TEST(SoilLaws, ElasticBatches)
 {
   for (const char *text : all) {
@@ -269,7 +269,8 @@ TEST(DruckerPrager, SeparatedSandDoesNotGainVolume)
   EXPECT_NEAR(p.work[PLASTIC], 0.0, 1e-7 * K);
 }
 
-// tension: to the apex c cot(phi) of the cone, or to the cutoff; opening dissipates, closing does not
+// tension: to the apex c cot(phi) of the cone, or to the cutoff; opening dissipates, closing does
+// not
 TEST(DruckerPrager, Tension)
 {
   const double c = 2e4, phi = 35 * DEG;
@@ -323,8 +324,8 @@ TEST(DruckerPrager, ReturnEndsOnTheYieldSurface)
   EXPECT_GT(corner, 50);
 }
 
-// A trial stress beyond the limit of tension is within it again when it has dilated on its way to the cone: then
-// the cone alone decides, with the multiplier of its own return
+// A trial stress beyond the limit of tension is within it again when it has dilated on its way to
+// the cone: then the cone alone decides, with the multiplier of its own return
 TEST(DruckerPrager, DilationOutOfTensionIsAReturnToTheCone)
 {
   Point p("density 1600 drucker/prager 1e7 0.3 35 cohesion 2e4 dilatancy 20 tension 1e4");

@@ -1,6 +1,5 @@
-// labels: unit physics
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// labels: unit physics This file is part of the MPM package for LAMMPS, distributed under the GNU
+// General Public License, version 2; see the file LICENSE.
 
 // Strengths and thermal parts, point by point, against closed forms and ordinary differential
 // equations that are solved here.
@@ -275,7 +274,8 @@ TEST(J2Kinematic, ReturnEndsOnTheYieldSurface)
 
 /* ---------------------------------------------------------------------- j2: rate */
 
-/** Overstress over the strain rate: Y (r/rate)^n of Cowper and Symonds, or S (r/rate)^n of Perzyna. */
+/** Overstress over the strain rate: Y (r/rate)^n of Cowper and Symonds, or S (r/rate)^n of
+ *  Perzyna. */
 struct Rate {
   const char *text;
   double rate, n, S;    ///< S: 0 for Y
@@ -548,7 +548,8 @@ TEST(SteinbergLaw, ModulusAndFlowStress)
   EXPECT_GT(137e9 * (1 / 0.12 - 1), 1e12);    // TPa are reached
 }
 
-// the flow stress begins where strain before the start has left it, and TREF is where G0 and Y0 are meant
+// the flow stress begins where strain before the start has left it, and TREF is where G0 and Y0 are
+// meant
 TEST(SteinbergLaw, PrestrainAndReferenceTemperature)
 {
   Point p("density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 0 3.77e-4 "
@@ -622,8 +623,8 @@ TEST(SteinbergLaw, BadInputIsRefused)
 
 /* ---------------------------------------------------------------------- all strengths */
 
-// tension with free sides: the equivalent stress is the axial one, and the flow stress of the strain,
-// rate, temperature (and pressure of the step before) there; small strain by hand
+// tension with free sides: the equivalent stress is the axial one, and the flow stress of the
+// strain, rate, temperature (and pressure of the step before) there; small strain by hand
 TEST(Strengths, UniaxialStress)
 {
   const double rate = 2e3;

@@ -1,8 +1,8 @@
-// labels: unit physics
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// labels: unit physics This file is part of the MPM package for LAMMPS, distributed under the GNU
+// General Public License, version 2; see the file LICENSE.
 
-// The law of fabrics at a point, and on a surface, against closed forms and the kinematics of pin-jointed yarns.
+// The law of fabrics at a point, and on a surface, against closed forms and the kinematics of
+// pin-jointed yarns.
 
 #include "material/material_testing.h"
 #include "material/plane_stress.h"
@@ -35,7 +35,8 @@ Matrix nominal(const MaterialPoint &p)
   return P;
 }
 
-/** Yarns of unit length that were at 0 and theta degrees, turned towards each other by the same angle, gamma in all. */
+/** Yarns of unit length that were at 0 and theta degrees, turned towards each other by the same
+ *  angle, gamma in all. */
 Matrix pinned(double theta, double gamma)
 {
   const double a = 0.5 * gamma, t = theta * DEGREE, b = t - a;
@@ -47,14 +48,16 @@ Matrix pinned(double theta, double gamma)
 
 }    // namespace
 
-// force per width of warp or weft, at any angle between these, in tension; none in compression, and none across the yarns
+// force per width of warp or weft, at any angle between these, in tension; none in compression, and
+// none across the yarns
 TEST(Woven, TensionAlongYarns)
 {
   for (const double theta : {90.0, 60.0, 135.0})
     for (const double stretch : {1.0001, 1.05, 1.4, 0.9}) {
       SCOPED_TRACE(joined(theta, " ", stretch));
       const auto material = make(woven(E1, E2, G, joined("angle ", theta)));
-      // along the warp, with a width at which the angle between yarns, and the length of the weft, stay
+      // along the warp, with a width at which the angle between yarns, and the length of the weft,
+      // stay
       const double t = theta * DEGREE;
       for (const int family : {0, 1}) {
         const double E = family == 0 ? E1 : E2;
@@ -82,7 +85,8 @@ TEST(Woven, TensionAlongYarns)
     }
 }
 
-// picture frame: the work of the corners' moment is the energy G gamma^2/2, and more beyond the locking angle, to either side
+// picture frame: the work of the corners' moment is the energy G gamma^2/2, and more beyond the
+// locking angle, to either side
 TEST(Woven, PictureFrame)
 {
   const double lock = 40.0, GL = 2e7;
@@ -108,8 +112,9 @@ TEST(Woven, PictureFrame)
   }
 }
 
-// Pulled along the bias, with free sides, yarns that hardly stretch turn like pin-jointed rods: a stretch of sqrt(2) cos(theta/2), and a
-// force by virtual work of M sqrt(2)/sin(theta/2) per reference area. Stiffer yarns are closer to this, with an error that falls as 1/E
+// Pulled along the bias, with free sides, yarns that hardly stretch turn like pin-jointed rods: a
+// stretch of sqrt(2) cos(theta/2), and a force by virtual work of M sqrt(2)/sin(theta/2) per
+// reference area. Stiffer yarns are closer to this, with an error that falls as 1/E
 TEST(Woven, BiasExtensionIsATrellis)
 {
   const double stretch = 1.25, half = std::acos(stretch / std::sqrt(2.0)),
@@ -183,8 +188,9 @@ struct Cloth {
 
 }    // namespace
 
-// a surface with any normal, turned further in space: the stress of the law in its own axes, turned; also of wood, whose thickness
-// changes such that nothing acts across. The deformation gradient that is kept is that of space, not of the axes
+// a surface with any normal, turned further in space: the stress of the law in its own axes,
+// turned; also of wood, whose thickness changes such that nothing acts across. The deformation
+// gradient that is kept is that of space, not of the axes
 TEST(Woven, AxesLieOnSurfaces)
 {
   const Matrix turn = rotation(AXIS, 0.9), later = rotation({0.6, -0.8, 0.0}, 1.7);

@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit physics
 
-// The library of materials as a whole: each law is in the lists of the tests that all laws must pass
-// and of the benchmark, depends on no units, and stands fast and large motions; each material file
-// tells what it is, where its values come from, and where they are valid.
+// The library of materials as a whole: each law is in the lists of the tests that all laws must
+// pass and of the benchmark, depends on no units, and stands fast and large motions; each material
+// file tells what it is, where its values come from, and where they are valid.
 
 #include "declare/table_testing.h"
 #include "law/law.h"
@@ -116,8 +116,8 @@ TEST(Library, MaterialFilesAreComplete)
     EXPECT_TRUE(names.count(name)) << name;
 }
 
-// where a file says that its moduli come from E and nu, they do, to the digits that it has; the bulk
-// modulus of a shock equation of state has sources of its own
+// where a file says that its moduli come from E and nu, they do, to the digits that it has; the
+// bulk modulus of a shock equation of state has sources of its own
 TEST(Library, ModuliAreThoseOfEAndNu)
 {
   const std::regex words("E = ([0-9.]+) ([GM])Pa, nu = ([0-9]\\.[0-9]+)"), shock("\\neos +shock ");
@@ -141,10 +141,10 @@ TEST(Library, ModuliAreThoseOfEAndNu)
   EXPECT_GE(files, 14);
 }
 
-// longitudinal speeds of sound, as handbooks and tables for ultrasonic testing have them (such as the
-// CRC Handbook of Chemistry and Physics): density, bulk and shear modulus of the files come from
-// tests at high rates, and must be those of the material all the same. (Not so in PMMA_elastic, with
-// a slow modulus, and in Water_shock, a line for strong shocks.)
+// longitudinal speeds of sound, as handbooks and tables for ultrasonic testing have them (such as
+// the CRC Handbook of Chemistry and Physics): density, bulk and shear modulus of the files come
+// from tests at high rates, and must be those of the material all the same. (Not so in
+// PMMA_elastic, with a slow modulus, and in Water_shock, a line for strong shocks.)
 TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
 {
   const std::pair<double, const char *> tables[] = {
@@ -163,7 +163,8 @@ TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
   }
 }
 
-// wet sand, gelatin, and the failure of Weldox: what the laws make of the values is what the sources say
+// wet sand, gelatin, and the failure of Weldox: what the laws make of the values is what the
+// sources say
 TEST(Library, WetSandIsAtCriticalState)
 {
   Point p(definition("Sand_Toyoura_wet_DP"));
@@ -202,8 +203,8 @@ TEST(Library, GelatinFollowsItsHugoniot)
     if (value(p, "damage") >= 1.0) failed = 0.01 * i;
     if (i > 60 && !failed) EXPECT_NEAR(p.vonmises(), 0.22e6, 1.0);
   }
-  // at a shear of sqrt(3) (plastic + elastic strain), with steps of 0.01 and some of the elastic shear
-  // lost as it turns
+  // at a shear of sqrt(3) (plastic + elastic strain), with steps of 0.01 and some of the elastic
+  // shear lost as it turns
   EXPECT_NEAR(failed, std::sqrt(3.0) * (0.9 + 0.22e6 / (3 * 0.85e6)), 0.03);
   EXPECT_EQ(p.vonmises(), 0.0);
 }

@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MATERIAL_TESTING_H
 #define MATERIAL_TESTING_H
 
-// Tools for tests of constitutive laws: 3x3 matrices, motions of a point, and samples of all laws. This
-// header includes the standard headers that these tests need.
+// Tools for tests of constitutive laws: 3x3 matrices, motions of a point, and samples of all laws.
+// This header includes the standard headers that these tests need.
 
 #include "material/material_point.h"
 #include "math/matrix.h"
@@ -200,9 +200,10 @@ inline void moves(MaterialPoint &p, const Matrix &A, double dt, int n = 1)
   for (int i = 0; i < n; i++) p.move(A.data(), dt);
 }
 
-/** Makes n steps of a motion F(t), t from 0 to 1, of two points, plain and turned. The motion of the
- *  second point is rotated in addition, by an angle that grows to the given one. Calls check(plain,
- *  turned, difference) after each step; difference: of the stress from that of plain, rotated. */
+/** Makes n steps of a motion F(t), t from 0 to 1, of two points, plain and turned. The motion of
+ *  the second point is rotated in addition, by an angle that grows to the given one. Calls
+ *  check(plain, turned, difference) after each step; difference: of the stress from that of plain,
+ *  rotated. */
 template <class Motion, class Check>
 void turn_on_top(const Material &material, const Motion &F, double angle, int n, const Check &check)
 {
@@ -216,8 +217,8 @@ void turn_on_top(const Material &material, const Motion &F, double angle, int n,
   }
 }
 
-/** Expects that a rotation on top of a motion rotates the stress and does not change the stored energy,
- *  to a relative tolerance. more(plain, turned): other checks of the two points. */
+/** Expects that a rotation on top of a motion rotates the stress and does not change the stored
+ *  energy, to a relative tolerance. more(plain, turned): other checks of the two points. */
 template <class Motion, class More>
 void expect_objective(const Material &material, const Motion &F, double angle, double tolerance,
                       const More &more)
@@ -245,9 +246,9 @@ struct RandomMatrix {
   }
 };
 
-/** Makes n steps with random velocity gradients, for repeats points with each size of the strain and
- *  each duration of a step. Calls check(p, e, dt) after each step. e: first history variable before the
- *  step, 0 if the law has none. */
+/** Makes n steps with random velocity gradients, for repeats points with each size of the strain
+ *  and each duration of a step. Calls check(p, e, dt) after each step. e: first history variable
+ *  before the step, 0 if the law has none. */
 template <class Check>
 void random_steps(const Material &material, std::mt19937 &random,
                   const std::vector<double> &strains, const std::vector<double> &durations,
@@ -280,8 +281,8 @@ inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of
     EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
 }
 
-/** A wrong definition, with a part or a pattern of the error message. word: number of the word that the
- *  error is about (-1: not checked). */
+/** A wrong definition, with a part or a pattern of the error message. word: number of the word that
+ *  the error is about (-1: not checked). */
 struct Refusal {
   std::string text;
   const char *message;
@@ -339,7 +340,8 @@ inline void follow(MaterialPoint &p, const std::function<Matrix(double)> &L, dou
 
 /** Unknowns of a system of differential equations. */
 using State = std::vector<double>;
-/** Integrates dy/dt = f(t, y) from t = 0 to the time in n steps of the classical Runge-Kutta method. */
+/** Integrates dy/dt = f(t, y) from t = 0 to the time in n steps of the classical Runge-Kutta
+ *  method. */
 inline State runge_kutta(const std::function<State(double, const State &)> &f, State y, double time,
                          int n)
 {
@@ -360,8 +362,8 @@ inline State runge_kutta(const std::function<State(double, const State &)> &f, S
 
 constexpr double MPa = 1e6, GPa = 1e9;
 
-/** A material, with a name for messages. The list has one of each kind, for the tests of properties that
- *  all laws share (objectivity, energy, wave speed, instruction sets, extremes). */
+/** A material, with a name for messages. The list has one of each kind, for the tests of properties
+ *  that all laws share (objectivity, energy, wave speed, instruction sets, extremes). */
 struct Sample {
   const char *name, *text;
 };

@@ -1,6 +1,5 @@
-// labels: unit physics
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// labels: unit physics This file is part of the MPM package for LAMMPS, distributed under the GNU
+// General Public License, version 2; see the file LICENSE.
 
 // Constitutive laws, point by point and without a grid, against closed forms.
 
@@ -818,8 +817,8 @@ struct Row {
   double scale;
 };
 
-/** Leaves numbers that are none where functions that are called next have their arrays: what a law takes from an array that it
- *  has not filled is seen in its results. */
+/** Leaves numbers that are none where functions that are called next have their arrays: what a law
+ *  takes from an array that it has not filled is seen in its results. */
 __attribute__((noinline)) void spoil_stack()
 {
   volatile double room[1 << 14];

@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// Surfaces and lines: the stretch across them, and what does not resist compression. The neo-Hookean law in plane stress
-// against its own equations, solved here; pressures of balloons are section R2 of the benchmarks.
+// Surfaces and lines: the stretch across them, and what does not resist compression. The
+// neo-Hookean law in plane stress against its own equations, solved here; pressures of balloons are
+// section R2 of the benchmarks.
 
 #include "material/material_testing.h"
 #include "material/plane_stress.h"
@@ -38,8 +39,8 @@ struct Surface {
     point.old = old;
   }
 
-  /** Stress (a matrix) after a motion with the deformation gradient F of the whole space, of which only what is along the body
-   *  counts. */
+  /** Stress (a matrix) after a motion with the deformation gradient F of the whole space, of which
+   *  only what is along the body counts. */
   Matrix go(const Matrix &F)
   {
     std::fill_n(point.along, 9, 0.0);
@@ -101,7 +102,8 @@ Matrix diagonal(double a, double b)
 
 }    // namespace
 
-// stretches along both axes: nothing acts across, and the rest is that of the law with the thickness which follows
+// stretches along both axes: nothing acts across, and the rest is that of the law with the
+// thickness which follows
 TEST(PlaneStress, Surface)
 {
   for (const double nu : {0.0, 0.3, 0.45})
@@ -135,7 +137,8 @@ TEST(PlaneStress, Balloon)
   }
 }
 
-// what is narrower than it would be by itself wrinkles, and is in uniaxial tension however narrow it is
+// what is narrower than it would be by itself wrinkles, and is in uniaxial tension however narrow
+// it is
 TEST(PlaneStress, Wrinkles)
 {
   const double nu = 0.3, a = 1.5;
@@ -165,7 +168,8 @@ TEST(PlaneStress, Wrinkles)
   EXPECT_GT(slack.go(diagonal(1.1, 0.4))[0] / E, 0.05);
 }
 
-// The energy is that of the motion alone, and stress is its gradient, along any direction and turned in space
+// The energy is that of the motion alone, and stress is its gradient, along any direction and
+// turned in space
 TEST(PlaneStress, StressIsTheGradientOfEnergy)
 {
   const double c = cos(0.8), s = sin(0.8);
@@ -229,7 +233,8 @@ TEST(PlaneStress, Lines)
   EXPECT_NEAR(truss.go(diagonal(0.7, 1.0))[0] / neohookean(nu, 0, 0.7, more, more), 1.0, 1e-8);
 }
 
-// a metal sheet in uniaxial tension beyond yield, in many steps: strength of the law, free of stress across in each of them
+// a metal sheet in uniaxial tension beyond yield, in many steps: strength of the law, free of
+// stress across in each of them
 TEST(PlaneStress, PlasticStrip)
 {
   Surface s("density 1 eos linear 1000 strength j2 400 1 hardening linear 0", 3, 1, true);
@@ -238,8 +243,9 @@ TEST(PlaneStress, PlasticStrip)
   EXPECT_NEAR(stress, 1.0, 2e-3);
 }
 
-// metals, rubber, concrete, glass, ice, snow: also those that yield, soften, and break, whose stress has kinks and steps, go through a random
-// motion with nothing across, up to what a stretch found to 1e-11 leaves
+// metals, rubber, concrete, glass, ice, snow: also those that yield, soften, and break, whose
+// stress has kinks and steps, go through a random motion with nothing across, up to what a stretch
+// found to 1e-11 leaves
 TEST(PlaneStress, AnyLaw)
 {
   for (const std::string name :
@@ -310,7 +316,8 @@ TEST(PlaneStress, Refuses)
             std::string::npos);
 }
 
-// gas: blow-down through a choked nozzle, section V2; filling of an empty bag, and of one that holds as much before
+// gas: blow-down through a choked nozzle, section V2; filling of an empty bag, and of one that
+// holds as much before
 TEST(BagGas, BlowDownAndFilling)
 {
   const double gamma = 1.4, R = 287.0, T = 300.0, V = 0.1, p = 1e6, area = 1e-4;
@@ -346,8 +353,8 @@ TEST(BagGas, BlowDownAndFilling)
   EXPECT_NEAR(half.pressure() * std::pow(half.volume, gamma) / before, 1.0, 1e-12);
 }
 
-// V4: a piston of 10 kg falls at 5 m/s on a cylinder of gas: how deep it comes, when, and the pressure there, with the time step of an
-// explicit run; the energy of piston and gas is kept
+// V4: a piston of 10 kg falls at 5 m/s on a cylinder of gas: how deep it comes, when, and the
+// pressure there, with the time step of an explicit run; the energy of piston and gas is kept
 TEST(BagGas, Piston)
 {
   const double mass = 10.0, area = 0.01, length = 0.5, p0 = 1e5, g = 9.81, dt = 1e-5;

@@ -1,7 +1,7 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-// labels: unit physics restart
+// labels: unit physics restart ranks
 // mpi: 1 2
 
 // Random fields: moments, correlation, and that they depend on nothing but position, length, and
@@ -459,8 +459,8 @@ TEST_F(Random, FixAndRestart)
   }
 }
 
-// parameters of all kinds, each point with its own: the temperature that the same plastic work gives,
-// the stress of a term, and the mass
+// parameters of all kinds, each point with its own: the temperature that the same plastic work
+// gives, the stress of a term, and the mass
 TEST_F(Random, FixWithEveryKindOfParameter)
 {
   Scene run(MPM_TEST::space("si", "f f f", "0 10 0 10 0 10", 1, 0.3) +

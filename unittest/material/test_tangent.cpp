@@ -1,6 +1,5 @@
-// labels: unit physics
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// labels: unit physics This file is part of the MPM package for LAMMPS, distributed under the GNU
+// General Public License, version 2; see the file LICENSE.
 
 // Analytic tangents of materials against differences of their updates.
 
@@ -20,7 +19,8 @@ constexpr int COMPONENT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 /** Motions of the points of a batch. */
 using Motions = std::vector<Matrix>;
 
-/** Makes the step F_new = (I + A) F of points, each with a motion of its own; t: also the tangent. */
+/** Makes the step F_new = (I + A) F of points, each with a motion of its own; t: also the
+ *  tangent. */
 void make_step(MaterialPoint &p, const Motions &A, double dt, Tangent *t = nullptr)
 {
   Batch &b = p.batch;
@@ -68,9 +68,10 @@ double largest(const Tangent &t, int i)
   return most;
 }
 
-/** Compares the tangent of a step with differences of the update, of fourth order in h. Returns the number of points
- *  with another tangent for which the differences are no derivative either, as there is a kink of the update within
- *  2 h: those of second order in h and in 2 h, or those to both sides, do not agree. */
+/** Compares the tangent of a step with differences of the update, of fourth order in h. Returns the
+ *  number of points with another tangent for which the differences are no derivative either, as
+ *  there is a kink of the update within 2 h: those of second order in h and in 2 h, or those to
+ *  both sides, do not agree. */
 int expect_tangent(const MaterialPoint &before, const Motions &A, double dt, double h,
                    double tolerance)
 {
@@ -113,8 +114,8 @@ int expect_tangent(const MaterialPoint &before, const Motions &A, double dt, dou
   return kinks;
 }
 
-/** Random motions with gradients of 1e-3 to strain, growing with the number of the point, in space, in the plane xy, or with
- *  a strain around an axis in addition. */
+/** Random motions with gradients of 1e-3 to strain, growing with the number of the point, in space,
+ *  in the plane xy, or with a strain around an axis in addition. */
 enum Kind { SPACE, PLANE, AROUND };
 Motions random_motions(RandomMatrix &random, int n, double strain, Kind kind)
 {
@@ -395,8 +396,9 @@ TEST(Tangent, OnBothSidesOfYield)
   }
 }
 
-// without any motion, and with motions so small that squares of their strains or stresses underflow, in SI units and in others whose
-// numbers are large or small: finite, and the same as that of a small motion
+// without any motion, and with motions so small that squares of their strains or stresses
+// underflow, in SI units and in others whose numbers are large or small: finite, and the same as
+// that of a small motion
 TEST(Tangent, OfNextToNoMotion)
 {
   std::vector<Sample> all(std::begin(samples), std::end(samples));
@@ -445,7 +447,8 @@ TEST(Tangent, OfNextToNoMotion)
 
 TEST(Tangent, ConvergesQuadratically)
 {
-  // uniaxial stress after a large plastic strain, found by Newton's method for the lateral stretches
+  // uniaxial stress after a large plastic strain, found by Newton's method for the lateral
+  // stretches
   const auto material =
       make("density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening voce 2e8 15 1e8");
   MaterialPoint before(*material);

@@ -8,8 +8,8 @@
 
 // labels: unit
 
-// Stress that depends on the temperature, point by point: thermal expansion of all laws, parameters that
-// vary with the temperature, and the heat that comes of compression.
+// Stress that depends on the temperature, point by point: thermal expansion of all laws, parameters
+// that vary with the temperature, and the heat that comes of compression.
 
 #include "material/material_testing.h"
 #include "material/random_field.h"
@@ -95,7 +95,8 @@ TEST(Expansion, IsTakenOutOfTheMotionOfAnyLaw)
   EXPECT_GT(n, 30 * 40);
 }
 
-// no stress when nothing hinders the expansion, at small and at 30 % strain, in one step and in many
+// no stress when nothing hinders the expansion, at small and at 30 % strain, in one step and in
+// many
 TEST(Expansion, FreeBodyHasNoStress)
 {
   for (const char *law :
@@ -118,7 +119,8 @@ TEST(Expansion, FreeBodyHasNoStress)
       }
 }
 
-// a bar between walls, with free sides: -E ALPHA dT, and for 30 % the stress of a compression to 1/1.3
+// a bar between walls, with free sides: -E ALPHA dT, and for 30 % the stress of a compression to
+// 1/1.3
 TEST(Expansion, ClampedBar)
 {
   MixedControl clamped;
@@ -178,7 +180,8 @@ TEST(Expansion, EnergyBalance)
   }
 }
 
-// GAMMA = 3 K ALPHA/(density CP): compression warms, and is stiffer by 1 + (3 ALPHA)^2 K T/(density CP)
+// GAMMA = 3 K ALPHA/(density CP): compression warms, and is stiffer by 1 + (3 ALPHA)^2 K T/(density
+// CP)
 TEST(Expansion, ConsistentCoupling)
 {
   const double K = 70e9 / (3 * (1 - 2 * 0.33)), alpha = 23e-6, capacity = 2700.0 * 900;
@@ -207,8 +210,10 @@ TEST(Expansion, ConsistentCoupling)
   }
 }
 
-// what stays at constant volume is dp/dT = 3 K ALPHA: with a CP that depends on T, integral of CP/T dT is
-// -3 K ALPHA/density (J - 1), there and back; with ALPHA that depends on T it is the coupling of its value at T0
+// what stays at constant volume is dp/dT = 3 K ALPHA: with a CP that depends on T, integral of CP/T
+// dT is
+// -3 K ALPHA/density (J - 1), there and back; with ALPHA that depends on T it is the coupling of
+// its value at T0
 TEST(Expansion, ConsistentCouplingOfWhatVaries)
 {
   const double K = 1e6, alpha = 1e-3, rho = 1000, cp = 5, T0 = 300;
@@ -271,8 +276,9 @@ TEST(Expansion, EachPointStartsFromItsOwnTemperature)
   EXPECT_NEAR(p.pressure(), 0.0, 1e-8);
 }
 
-// aluminum warmed by 100 K, or strained by 1e-3: free strain, stress between walls and in a die, elastic cooling, and the
-// adiabatic bulk modulus. These are linear in what is done, of which a small part is done here
+// aluminum warmed by 100 K, or strained by 1e-3: free strain, stress between walls and in a die,
+// elastic cooling, and the adiabatic bulk modulus. These are linear in what is done, of which a
+// small part is done here
 TEST(Expansion, Aluminum)
 {
   constexpr double PART = 1e-4;
@@ -327,7 +333,8 @@ TEST(Expansion, BadInputIsRefused)
 
 namespace {
 
-/** Equations of state with an internal energy, dp/dE at J = 1, and the bulk modulus without energy. */
+/** Equations of state with an internal energy, dp/dE at J = 1, and the bulk modulus without
+ *  energy. */
 struct WithEnergy {
   const char *eos;
   double density, gamma, K;
@@ -341,8 +348,8 @@ const WithEnergy with_energy[] = {
 
 }    // namespace
 
-// what conduction brings between steps is in the internal energy, and so in the pressure, whatever the temperature has
-// to do with the heat; without motion it is no stored energy
+// what conduction brings between steps is in the internal energy, and so in the pressure, whatever
+// the temperature has to do with the heat; without motion it is no stored energy
 TEST(Conducted, HeatRaisesThePressure)
 {
   for (const auto &w : with_energy)
@@ -482,8 +489,8 @@ TEST(Vary, TableIsConstantOutside)
   EXPECT_DOUBLE_EQ(line.at(2000), 0.4);
 }
 
-// a rate-form law keeps its stress when its moduli change, an elastic potential its strain: what that
-// adds to the stored energy or takes from it is accounted for
+// a rate-form law keeps its stress when its moduli change, an elastic potential its strain: what
+// that adds to the stored energy or takes from it is accounted for
 TEST(Vary, EnergyBalance)
 {
   for (const char *law :
@@ -535,8 +542,8 @@ TEST(Vary, CoefficientOfExpansion)
   }
 }
 
-// adiabatic shear of a metal that softens by what its own work heats it (G.I. Taylor, H. Quinney 1934):
-// dT = DTM [1 - exp(-CHI tau0 gamma/(density CP DTM))], tau0 = sigma0/sqrt(3)
+// adiabatic shear of a metal that softens by what its own work heats it (G.I. Taylor, H. Quinney
+// 1934): dT = DTM [1 - exp(-CHI tau0 gamma/(density CP DTM))], tau0 = sigma0/sqrt(3)
 TEST(Vary, AdiabaticShear)
 {
   const double rho = 7830, cp = 477, chi = 0.9, DTM = 1500, sigma0 = 500e6;
@@ -574,8 +581,8 @@ TEST(Vary, AdiabaticShear)
   EXPECT_EQ(value(cold, "temperature"), 293);
 }
 
-// the share of plastic work that is heat: of each step, that at the temperature with which it begins, whoever makes the heat,
-// and whatever else varies; the stress does not know of it
+// the share of plastic work that is heat: of each step, that at the temperature with which it
+// begins, whoever makes the heat, and whatever else varies; the stress does not know of it
 TEST(Vary, ShareOfPlasticWork)
 {
   const std::string start = "density 7830 eos ", thermal = " thermal adiabatic 477 293 0.5";
@@ -622,7 +629,8 @@ TEST(Vary, ShareOfPlasticWork)
       }
 }
 
-// a specific heat by a formula: the temperature has the heat that is its integral, through melting, too
+// a specific heat by a formula: the temperature has the heat that is its integral, through melting,
+// too
 TEST(Vary, SpecificHeatByFormula)
 {
   struct {
@@ -777,8 +785,9 @@ TEST(Sources, WorkOfDamage)
     }
 }
 
-// the heat of a damage is in the internal energy as it is in the temperature, and raises the pressure. A point that is torn
-// apart and pushed together again: work of the pressure is what is stored, and what is set free
+// the heat of a damage is in the internal energy as it is in the temperature, and raises the
+// pressure. A point that is torn apart and pushed together again: work of the pressure is what is
+// stored, and what is set free
 TEST(Sources, WorkOfDamageRaisesThePressure)
 {
   constexpr double SHARE = 0.6, CP = 900;
@@ -840,8 +849,9 @@ TEST(Sources, WorkOfDamageRaisesThePressure)
       }
 }
 
-// the same in any motion, with plastic work, to second order in the step as without heat; plastic work that is heat in
-// tension brings an error that has nothing to do with that of the damage, so that there is none of it here
+// the same in any motion, with plastic work, to second order in the step as without heat; plastic
+// work that is heat in tension brings an error that has nothing to do with that of the damage, so
+// that there is none of it here
 TEST(Sources, WorkOfDamageWithPlasticWork)
 {
   const std::string start = "density 7850 eos shock 4600 1.4 2 strength j2 77e9 490e6 damage ";
@@ -873,7 +883,8 @@ TEST(Sources, WorkOfDamageWithPlasticWork)
       for (int level = 0; level < 3 && chi == 0.0; level++)
         EXPECT_LT(error[level], 6e-5 / (1 << 4 * level) * scale) << level;
     }
-  // detonation products bear no tension, but break by shear: their temperature follows from the energy
+  // detonation products bear no tension, but break by shear: their temperature follows from the
+  // energy
   Point p(
       "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930 strength j2 3e9 1e8 damage "
       "johnson/cook 0.05 0 0 thermal conducting 1000 293 1 0.9 fracture 0.5");
@@ -912,7 +923,8 @@ TEST(Sources, AllDissipation)
   EXPECT_GT(n, 30);
 }
 
-// detonation products have the temperature of their thermal energy, which falls as J^-OMEGA; half burnt, half of it
+// detonation products have the temperature of their thermal energy, which falls as J^-OMEGA; half
+// burnt, half of it
 TEST(Sources, DetonationProducts)
 {
   const double A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = 7e9;
@@ -953,8 +965,8 @@ TEST(Sources, DetonationProducts)
        {tnt + "thermal adiabatic 1000 293 vary CP table 200 1 4000 2", "constant CP"}});
 }
 
-// what conduction brings to detonation products is in their temperature and internal energy once, and so in the pressure,
-// before, while, and after they burn
+// what conduction brings to detonation products is in their temperature and internal energy once,
+// and so in the pressure, before, while, and after they burn
 TEST(Sources, DetonationProductsConduct)
 {
   const double A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = 7e9,

@@ -1,9 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// The shortest way between convex hulls, from nothing but the points that are farthest along a direction.
+// The shortest way between convex hulls, from nothing but the points that are farthest along a
+// direction.
 
 #include "math/hull_distance.h"
 
@@ -52,8 +53,8 @@ TEST(HullDistance, OfRows)
   EXPECT_NEAR(hull.x[1], 0.25, 1e-14);
 }
 
-// No plane at right angles to a way that is too long or has another direction leaves all points behind it: for any points,
-// the distance along it is its length, and hulls that overlap have none
+// No plane at right angles to a way that is too long or has another direction leaves all points
+// behind it: for any points, the distance along it is its length, and hulls that overlap have none
 TEST(HullDistance, OfAnyPoints)
 {
   std::mt19937 random(7481);

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_MESH_STL_TESTING_H
 #define MPM_MESH_STL_TESTING_H
@@ -71,8 +71,8 @@ inline Soup box(const Point &lo, const Point &hi)
   return soup;
 }
 
-/** The surface with x moved by share times z, and y by half of that. The inertia tensor of a sheared box
- *  has all components. */
+/** The surface with x moved by share times z, and y by half of that. The inertia tensor of a
+ *  sheared box has all components. */
 inline Soup sheared(Soup soup, double share)
 {
   for (auto &t : soup)
@@ -112,7 +112,8 @@ inline Soup both(Soup soup, const Soup &other)
   return soup;
 }
 
-/** Ball of the given radius: an icosahedron whose triangles are divided into four this many times. */
+/** Ball of the given radius: an icosahedron whose triangles are divided into four this many
+ *  times. */
 inline Soup ball(double radius, int divisions)
 {
   const auto onto = [](Point x) {
@@ -146,7 +147,8 @@ inline Soup ball(double radius, int divisions)
   return soup;
 }
 
-/** Prism over a polygon, from z = 0 to the height. cut: triangles of the polygon, by their corners. */
+/** Prism over a polygon, from z = 0 to the height. cut: triangles of the polygon, by their
+ *  corners. */
 inline Soup prism(const std::vector<std::array<double, 2>> &p, double height,
                   const std::vector<std::array<int, 3>> &cut)
 {
@@ -182,8 +184,8 @@ inline Soup cylinder(int n, double height)
   return prism(p, height, cut);
 }
 
-/** A body whose volume, principal moments of inertia (unit density), and number of lattice sites inside
- *  are known. size: spacing of the sites; sites = 0: number not known. */
+/** A body whose volume, principal moments of inertia (unit density), and number of lattice sites
+ *  inside are known. size: spacing of the sites; sites = 0: number not known. */
 struct Solid {
   const char *name;
   Soup soup;
@@ -221,8 +223,8 @@ inline std::vector<Solid> solids()
        26000}};
 }
 
-/** The triangles as an OBJ file. Every other triangle refers to its corners by negative numbers, which
- *  count backward from the last corner. */
+/** The triangles as an OBJ file. Every other triangle refers to its corners by negative numbers,
+ *  which count backward from the last corner. */
 inline std::string obj_of(const Soup &soup)
 {
   std::string s = "# a comment\no thing\n";

@@ -1,9 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// Meshes as the grid under points: which cell a point is in, shape functions, sides; elements that are divided.
+// Meshes as the grid under points: which cell a point is in, shape functions, sides; elements that
+// are divided.
 
 #include "mesh/background_mesh.h"
 
@@ -19,8 +20,9 @@ using ::testing::HasSubstr;
 
 namespace {
 
-/** n cells along each axis of a unit square or cube, distorted by a smooth map: kind 0: quadrangles or hexahedra, 1: each divided into
- *  triangles or tetrahedra. The side x = 0 is the group "left". */
+/** n cells along each axis of a unit square or cube, distorted by a smooth map: kind 0: quadrangles
+ *  or hexahedra, 1: each divided into triangles or tetrahedra. The side x = 0 is the group
+ *  "left". */
 Mesh block(int dim, int n, bool simplices, double distortion = 0.1)
 {
   Mesh mesh;
@@ -97,7 +99,8 @@ std::string failure(const std::function<void()> &f)
 
 }    // namespace
 
-// Functions sum to one and give back positions and linear functions at any place, found from any hint; gradients are their derivatives
+// Functions sum to one and give back positions and linear functions at any place, found from any
+// hint; gradients are their derivatives
 TEST_P(Kinds, FunctionsAreLinearlyComplete)
 {
   const auto [dim, simplices] = GetParam();
@@ -144,7 +147,8 @@ TEST_P(Kinds, FunctionsAreLinearlyComplete)
   }
 }
 
-// Neighbors know each other; sides of a closed surface point outward and sum to nothing, their moments to the volume
+// Neighbors know each other; sides of a closed surface point outward and sum to nothing, their
+// moments to the volume
 TEST_P(Kinds, SidesAndNeighbors)
 {
   const auto [dim, simplices] = GetParam();
@@ -268,7 +272,8 @@ TEST(BackgroundMesh, WhatIsNoGrid)
               HasSubstr("is between two cells"));
 }
 
-// Children have equal shares of straight elements and all of bent ones, none is folded, and they are where their parent was
+// Children have equal shares of straight elements and all of bent ones, none is folded, and they
+// are where their parent was
 TEST_P(Kinds, Halves)
 {
   const auto [dim, simplices] = GetParam();

@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit input
 // timeout: 300
 
-// Files of bodies that are cut, changed, or nonsense, in all formats: each is read, or is an error that begins with the
-// name of the file; nothing crashes or takes long. Builds with MPM_SANITIZE see each access beyond the end.
+// Files of bodies that are cut, changed, or nonsense, in all formats: each is read, or is an error
+// that begins with the name of the file; nothing crashes or takes long. Builds with MPM_SANITIZE
+// see each access beyond the end.
 
 #include "bad_input_testing.h"
 #include "image/image_testing.h"
@@ -129,7 +130,8 @@ INSTANTIATE_TEST_SUITE_P(All, BadFiles, ::testing::ValuesIn(formats()), [](const
   return info.param.name;
 });
 
-/** What a reader says to a file, empty: it reads it. Any other exception or a signal ends the test. */
+/** What a reader says to a file, empty: it reads it. Any other exception or a signal ends the
+ *  test. */
 std::string said(const Format &format, const std::string &text)
 {
   const ScratchFile file(format.name.find("Obj") == 0 ? "bad.obj" : "bad", text);

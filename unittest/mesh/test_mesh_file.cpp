@@ -1,7 +1,7 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-// labels: unit
+// labels: unit ranks
 // mpi: 1 3
 
 // One mesh in the files of several programs: the same points, and what the file says of them.
@@ -52,7 +52,8 @@ std::string turned_cube(double angle, double top)
 TEST(MeshFile, VolumesOfTwistedElements)
 {
   const double pi = 3.14159265358979323846;
-  // section at height z: the corner goes along a line, so its distance squared is (1-z)^2 + 2 z (1-z) s c + z^2 s^2
+  // section at height z: the corner goes along a line, so its distance squared is (1-z)^2 + 2 z
+  // (1-z) s c + z^2 s^2
   const auto exact = [](double angle, double s) {
     return (1.0 + s * std::cos(angle) + s * s) / 3.0;
   };
@@ -121,7 +122,8 @@ TEST(MeshFile, TypesAndGroups)
   expect_error(space_2 + make(two.name, "elements", "types physical"), "in the sets");
 }
 
-// parts of Abaqus are where instances put them, moved and turned; sets of parts have elements of all of them, those of the assembly of one
+// parts of Abaqus are where instances put them, moved and turned; sets of parts have elements of
+// all of them, those of the assembly of one
 TEST(MeshFile, PartsOfAbaqus)
 {
   const std::string cube = "*PART, NAME=Cube\n*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,2\n"

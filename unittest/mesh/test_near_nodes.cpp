@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -18,7 +18,8 @@
 
 using namespace MPM_NS;
 
-// a row of nodes that meets itself at one end: paths along it, not distances, and the shorter way where there are two
+// a row of nodes that meets itself at one end: paths along it, not distances, and the shorter way
+// where there are two
 TEST(NearNodes, ByPaths)
 {
   const NearNodes open(6, {{0, 1, 1.0}, {1, 2, 1.0}, {2, 3, 1.0}, {3, 4, 1.0}, {4, 5, 1.0}}, 2.5);
@@ -46,7 +47,8 @@ TEST(NearNodes, ShortestPaths)
   EXPECT_GT(nodes.memory(), 0.0);
 }
 
-// the place in a triangle that is farthest from its corners, by looking at many of them; known for equal sides, right angles, and all but flat ones
+// the place in a triangle that is farthest from its corners, by looking at many of them; known for
+// equal sides, right angles, and all but flat ones
 TEST(TriangleGap, FarthestFromCorners)
 {
   EXPECT_NEAR(triangle_gap(1.0, 1.0, 1.0), 1.0 / std::sqrt(3.0), 1e-12);
@@ -103,7 +105,8 @@ TEST(Passages, SideOfAFace)
   EXPECT_FALSE(within);
 }
 
-// a side that changes tells a passage, but not where a node was or is not seen, nor where it stays beyond an edge
+// a side that changes tells a passage, but not where a node was or is not seen, nor where it stays
+// beyond an edge
 TEST(Passages, Looks)
 {
   using Sight = Passages::Sight;

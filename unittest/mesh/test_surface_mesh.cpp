@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: smoke
 // mpi: 1 2
@@ -72,7 +72,8 @@ TEST(SurfaceMesh, NormalsHaveTheSymmetryOfTheBody)
     }
 }
 
-// in the corners of a box all of its faces, outside of its edges the edge, never the far face of a plate
+// in the corners of a box all of its faces, outside of its edges the edge, never the far face of a
+// plate
 TEST(SurfaceMesh, TouchesEachPartOnce)
 {
   const SurfaceMesh mesh(text_of(box({0.0, 0.0, 0.0}, {4.0, 4.0, 1.0})), "box", 1.0,
@@ -300,9 +301,9 @@ TEST(RegionMesh, ActsLikeABlock)
   EXPECT_GT(fabs(block.evaluate("f_w1[3]")), 0.1);
 }
 
-// Grains that fall into a corner of three walls, and into an edge with friction and its history. (With history and three
-// walls at once, fix wall/gran/region takes the history of one wall for another when they are touched in another order
-// than the region lists them.)
+// Grains that fall into a corner of three walls, and into an edge with friction and its history.
+// (With history and three walls at once, fix wall/gran/region takes the history of one wall for
+// another when they are touched in another order than the region lists them.)
 TEST(RegionMesh, HoldsGrainsLikeABlock)
 {
   const ScratchFile room("room.stl", text_of(box({1.0, 1.0, 1.0}, {9.0, 9.0, 9.0})));

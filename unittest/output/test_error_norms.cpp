@@ -109,6 +109,7 @@ static double vortex(int n, const std::string &settings = "", double angle = 0.1
 // sign of (g' s)^2 that is found in several codes, the error does not become smaller than 5e-3.
 TEST(ErrorNorms, GeneralizedVortex)
 {
+  LONG_CASE();
   const double coarse = vortex(5), fine = vortex(8);
   EXPECT_NEAR(coarse, 1.94e-2, 0.1 * 1.94e-2);
   EXPECT_GT(std::log(coarse / fine) / std::log(8.0 / 5.0), 1.4);

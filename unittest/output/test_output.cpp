@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: unit output smoke
+// labels: unit output smoke ranks
 // mpi: 1 2
 
 // Output styles: compute mpm/atom, compute mpm/energy, dump mpm/vtk, dump mpm/grid/vtk.

@@ -84,6 +84,7 @@ PARAMETER_TEST(
            Strip{
                0.2, 1.106897, {{0.1, 1.095414}, {0.2, 0.968114}, {0.5, 0.592785}}, " every auto"}))
 {
+  LONG_AFTER(1);
   const Strip strip = GetParam();
   const Clay clay = {strip.nu, 50.0, 800.0};
   const int n = 20;
@@ -120,6 +121,7 @@ PARAMETER_TEST(
 // lowered: first it rises in the middle. An eighth of the sphere
 PARAMETER_TEST(Cryer, PressureRisesFirst, const char *, Values("", " every auto"))
 {
+  LONG_AFTER(1);
   const Clay clay = {0.2, 50.0, 200.0};
   const int n = 12;
   const double h = 1.0 / n, P = 1e-3, c = clay.rate(), L = 1.0 + 1.5 * h;
@@ -325,6 +327,7 @@ PARAMETER_TEST(
                {0.282052, 0.334583},
                {0.325526, 0.058973}}}))
 {
+  LONG_AFTER(1);
   const Large &soil = GetParam();
   constexpr double BULK = 200.0;    // of the water, in moduli of the soil
   const int n = soil.cells;
@@ -396,6 +399,7 @@ double volumes(Scene &run, double Kf, std::vector<double> &storage)
 // water in the pores gets of its volume when its pressure falls
 SERIAL_TEST(SelfWeight, Consolidates)
 {
+  LONG_CASE();
   const int n = 20;
   const double Kf = 2.2e8, c = 1e-3 / 9810.0 / (1.0 / MODULUS + 0.4 / Kf), weight = 1002 * 9.81;
   for (const double offset : {0.0, 0.3}) {

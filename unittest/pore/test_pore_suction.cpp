@@ -175,6 +175,7 @@ SERIAL_TEST(Infiltration, SrivastavaAndYeh)
 // times as fast: heads behind the front, its depth, and the water, which is that of the points by their saturation, too
 SERIAL_TEST(Infiltration, IntoDrySand)
 {
+  LONG_CASE();
   double depth[2];
   for (const int n : {25, 50}) {
     Scene run(column(n,
@@ -297,6 +298,7 @@ SERIAL_TEST(Geostatic, CapillaryFringeWithinACell)
 // are full with the saturation Ss, partly full, or full below a water table in the block
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
 {
+  LONG_CASE();
   const double mu = 0.3, H = 0.4, T = 0.05;
   for (const char *bishop : {"saturation", "effective"})
     for (const auto &[Ss, table] :
@@ -410,6 +412,7 @@ std::string absorbs(int n, double K, double end)
 // volumes. The front does not hold it back, also where the water is stiff
 SERIAL_TEST(Surface, FillsDrySoil)
 {
+  LONG_CASE();
   for (const double K : {1e6, 1e7}) {
     double more[2];
     for (const int n : {10, 20}) {

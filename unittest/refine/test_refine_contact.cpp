@@ -182,6 +182,7 @@ SERIAL_TEST(Collision, BeginsWhereTheyTouch)
 // The same in 3d, and in the opposite order of the fields
 SERIAL_TEST(Collision, In3d)
 {
+  LONG_CASE();
   double last = 0.0;
   for (const bool reversed : {false, true}) {
     std::vector<Part> parts = {{'A', 0, "0 4 0 4 0 4"},
@@ -225,6 +226,7 @@ std::string pile(const std::vector<Part> &parts, const std::string &options,
 // With affine terms in place of gradients, forces at the rim of a lattice are not those of the functions
 SERIAL_TEST(Rest, OnEachOther)
 {
+  LONG_CASE();
   for (const std::string options : {"stress gradient", ""}) {
     double coarse = 0.0;
     auto kinds = KINDS;
@@ -273,6 +275,7 @@ SERIAL_TEST(Rest, OneFormOfTheStress)
 // It slides on the other one with friction: the force is the coefficient of friction times its weight
 SERIAL_TEST(Slide, HasTheFrictionOfTheWeight)
 {
+  LONG_CASE();
   auto kinds = KINDS;
   kinds.insert(kinds.begin(), {"coarse", "fine"});
   for (const auto &kind : kinds) {

@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: physics extreme
+// labels: physics extreme ranks
 // mpi: 2 4
 // timeout: 300
 

@@ -289,6 +289,7 @@ static const VibrationCase vibrating_bar_cases[] = {
 
 PARAMETER_TEST(VibratingBar, TenPeriods, VibrationCase, ValuesIn(vibrating_bar_cases))
 {
+  LONG_AFTER(3);
   const auto &c = GetParam();
   const auto v = vibrate(c.options, c.cells, c.ppc, true);
   if (c.energy > 0.0) { EXPECT_NEAR(v.energy, c.energy, c.energy_tolerance); }
@@ -454,6 +455,7 @@ PARAMETER_TEST(Bars, Collide, const char *,
                Values("shape linear transfer flip 1.0 scheme musl", "shape quadratic transfer apic",
                       "shape quadratic transfer flip 1.0 scheme musl", "shape cubic transfer apic"))
 {
+  LONG_AFTER(1);
   collide(GetParam(), {1.0, 100.0, 0.05, -0.05, -0.05, 0.05, 0.2, -0.5, true});
   collide(GetParam(), {2.0, 100.0, 0.05, 0.0, 0.0, 0.025, 0.3, -0.25, false});    // twice as long
   // Z1 = 10, Z2 = 20, the waves return at the same time 2 L1/c1 = 2 L2/c2: bar 1 is then free of
@@ -592,6 +594,7 @@ PARAMETER_TEST(GalileanBar, ErrorDoesNotDependOnVelocity, const char *,
                       "shape quadratic transfer flip 1.0 scheme musl frame total",
                       "shape quadratic transfer apic frame total"))
 {
+  LONG_AFTER(1);
   const auto at_rest = galilean_bar(GetParam(), 40, 0.0);
   const auto slow = galilean_bar(GetParam(), 40, 1.0);
   const auto fast = galilean_bar(GetParam(), 40, 5.0);
@@ -629,6 +632,7 @@ static const PulseCase pulse_cases[] = {
 
 PARAMETER_TEST(Pulse, WaveSpeed, PulseCase, ValuesIn(pulse_cases))
 {
+  LONG_AFTER(3);
   const auto &c = GetParam();
   const double h = 0.01, width = 0.3, A = 1.0e-5, E = 100.0;
   const double modulus = E * (1.0 - c.nu) / ((1.0 + c.nu) * (1.0 - 2.0 * c.nu));
@@ -697,6 +701,7 @@ static const LongBar galilean_bar_at_rest_cases[] = {
 
 PARAMETER_TEST(GalileanBarAtRest, KeepsItsEnergy, LongBar, ValuesIn(galilean_bar_at_rest_cases))
 {
+  LONG_AFTER(1);
   const double A = GALILEAN_A, h = 0.05;
   Scene run;
   setup(run, {h, 0.0, 1.0, -0.5, 1.5, GetParam().options, "", GALILEAN_E, "neohookean"});

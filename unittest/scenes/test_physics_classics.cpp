@@ -85,6 +85,7 @@ static double half_period(const std::vector<std::array<double, 2>> &path)
 
 TEST(Column, BucklesUnderItsWeight)
 {
+  LONG_CASE();
   const double free = half_period(sway(0.0, 0.48)), half = half_period(sway(0.5, 0.68));
   EXPECT_NEAR(measured("column, share of the squared frequency at half the critical weight",
                        free * free / (half * half)),
@@ -109,6 +110,7 @@ TEST(Column, BucklesUnderItsWeight)
 
 TEST(Silo, WallsCarryAPart)
 {
+  LONG_CASE();
   const double w = 0.2, H = 0.8, mu = 0.3, rho = 1600.0, g = 9.81;
   double K[2];
   int k = 0;

@@ -325,6 +325,7 @@ static const RotationCase driven_rotation_cases[] = {
 
 PARAMETER_TEST(DrivenRotation, TenTurns, RotationCase, ValuesIn(driven_rotation_cases))
 {
+  LONG_AFTER(2);
   const auto &c = GetParam();
   Scene run(box(c.dim, "si", "f f f", "-6 6 -6 6 -6 6", 1, 0.3) +
             body(strprintf("block -1 2 -1 1 %s", c.dim == 2 ? "INF INF" : "-1 1"),
@@ -438,6 +439,7 @@ static const DisksCase two_disks_cases[] = {
 
 PARAMETER_TEST(TwoDisks, Collision, DisksCase, ValuesIn(two_disks_cases))
 {
+  LONG_AFTER(2);
   const auto &c = GetParam();
   Scene run(replaced(replaced(two_disks, "MPM_OPTIONS", c.options), "MPM_LAW", c.law));
   ASSERT_EQ(run.n(), 416);
@@ -483,6 +485,7 @@ PARAMETER_TEST(TwoDisks, Collision, DisksCase, ValuesIn(two_disks_cases))
 
 TEST(TwoDisks, Refined)
 {
+  LONG_CASE();
   for (const char *shape : {"quadratic", "cubic"}) {
     std::string scene = replaced(two_disks, "MPM_OPTIONS",
                                  strprintf("shape %s transfer flip 1.0 scheme musl", shape));
@@ -505,6 +508,7 @@ TEST(TwoDisks, Refined)
 
 TEST(Rings, Collision)
 {
+  LONG_CASE();
   const double h = 2.5e-3;
   Scene run(plane("si", "f f", "-0.15 0.15 -0.08 0.08", 2, 0.4 * h) +
             strprintf("fix grid all mpm %.17g transfer flip 1.0 scheme musl\n"
@@ -681,6 +685,7 @@ static const SpinCase spinning_disk_cases[] = {
 
 PARAMETER_TEST(SpinningDisk, AngularMomentum, SpinCase, ValuesIn(spinning_disk_cases))
 {
+  LONG_AFTER(2);
   const auto &c = GetParam();
   const double h = 0.025;
   Scene run;
@@ -905,6 +910,7 @@ static const LongSpinCase long_spin_cases[] = {{"transfer apic", "neohookean"},
 
 PARAMETER_TEST(LongSpin, SizeAndJ, LongSpinCase, ValuesIn(long_spin_cases))
 {
+  LONG_AFTER(1);
   const double h = 0.025;
   Scene run;
   setup_spin(run, GetParam().options, GetParam().law, h);
@@ -955,6 +961,7 @@ PARAMETER_TEST(LongSpin, SizeAndJ, LongSpinCase, ValuesIn(long_spin_cases))
 // a spinning rod gains no shear in the frame that turns with it (pitfall 1: 0.07 in 1.9 turns)
 TEST(SpinningRod, GainsNoShear)
 {
+  LONG_CASE();
   const double omega = 2.0 * PI;
   Scene run(plane("si", "f f", "-0.8 0.8 -0.8 0.8", 1, 0.02) +
             "fix grid all mpm 0.05\nregion rod block -0.5 0.5 -0.1 0.1 INF INF\n"

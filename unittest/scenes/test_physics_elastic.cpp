@@ -134,6 +134,7 @@ static const HangingCase hanging_cases[] = {
 
 PARAMETER_TEST(Hanging, Displacement, HangingCase, ValuesIn(hanging_cases))
 {
+  LONG_AFTER(2);
   EXPECT_LT(hanging_bar(GetParam()), GetParam().tolerance);
 }
 
@@ -179,6 +180,7 @@ static const BeamCase beam_cases[] = {{"shape quadratic transfer apic", 0.2, 3, 
 
 PARAMETER_TEST(Beam, Tip, BeamCase, ValuesIn(beam_cases))
 {
+  LONG_AFTER(2);
   const auto &c = GetParam();
   const double h = c.h, speed = sqrt((LAMBDA + 2.0 * MU) / RHO);
   Scene run(plane("si", "f f", "0 5 -5 2", 1, 0.4 * h) +
@@ -232,6 +234,7 @@ PARAMETER_TEST(TensedBeam, Tip, const char *,
                       "shape cpgimp transfer apic scheme musl",
                       "shape cpgimp transfer flip 1.0 scheme usavg"))
 {
+  LONG_AFTER(2);
   const double h = 0.125, d = 0.25 * h;
   Scene run(plane("si", "f f", "-0.5 5 -5 2", 1, 0.5 * h) +
             body("block -0.25 4 -0.5 0.5 INF INF",

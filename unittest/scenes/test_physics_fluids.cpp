@@ -147,6 +147,7 @@ TEST(Sod, QuadraticShapeFunctions)
 // what linear functions do (an independent code: 0.0184 with 200 cells, 0.0339 with 400)
 TEST(Sod, LinearShapeFunctionsDoNotConverge)
 {
+  LONG_CASE();
   const auto coarse = sod(100, "shape linear transfer flip 1.0 scheme musl");
   const auto fine = sod(200, "shape linear transfer flip 1.0 scheme musl");
   EXPECT_NEAR(measured("A5 linear: L1 of density", fine.density), 0.0184, 0.2 * 0.0184);
@@ -185,6 +186,7 @@ TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
 
 TEST(Noh, Planar)
 {
+  LONG_CASE();
   const double h = 0.01, t = 0.6;
   Scene run(strip(1.1, h, "transfer flip 1.0 scheme musl") +
             strprintf("region gas block 0 1 INF INF INF INF\ncreate_points 1 region gas ppc 3 1\n"
@@ -370,6 +372,7 @@ TEST(Detonation, OfTnt)
 
 TEST(Hydrostatic, Column)
 {
+  LONG_CASE();
   const double H = 1.0, h = 1.0 / 32, K = 400, g = 1.0;
   Scene run(
       plane("si", "p f", strprintf("0 %.17g 0 1.125", h), 1, 0.4 * h) +
@@ -482,6 +485,7 @@ double steady(const std::string &viscosity, double time, double dt,
 
 TEST(Channel, SteadyFlowOfYieldStressAndPowerLawFluids)
 {
+  LONG_CASE();
   // plug for y < TAUY/G (R.B. Bird et al., Dynamics of Polymeric Liquids 1, 1987, ch. 4)
   const auto bingham = [](double y) {
     const double mu = 0.5, tauy = 0.4, z = std::max(y, tauy);

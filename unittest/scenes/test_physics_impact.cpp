@@ -181,6 +181,7 @@ double radiation(double nu)
 
 TEST(HalfSpace, GrainLosesEnergyToWaves)
 {
+  LONG_CASE();
   EXPECT_NEAR(radiation(0.25), 0.930753, 1.0e-5);
 
   // a quarter of the half-space and of the grain, whose force goes to one point next to the edge; waves do not return from
@@ -328,6 +329,7 @@ ChainMotion spheres(int n, int probe, double v0, double end, int cells)
 
 TEST(Chain, SolitaryWave)
 {
+  LONG_CASE();
   const int n = 4, probe = 2;
   const double v0 = 0.025, end = 26.0;
   const auto exact = springs(n, probe, v0, end);

@@ -153,6 +153,7 @@ static const Row interval_cases[] = {
 
 PARAMETER_TEST(Interval, Error, Row, ValuesIn(interval_cases))
 {
+  LONG_AFTER(2);
   const auto &row = GetParam();
   const std::string options = std::string("transfer flip 1.0 ") + row.options;
   int ne = row.first;
@@ -200,6 +201,7 @@ static const OrderCase order_cases[] = {
 
 PARAMETER_TEST(Order, Two, OrderCase, ValuesIn(order_cases))
 {
+  LONG_AFTER(2);
   const auto &c = GetParam();
   const double coarse = mms_error(c.dim, c.coarse, c.G, c.options, true);
   const double fine = mms_error(c.dim, c.fine, c.G, c.options, true);
@@ -291,6 +293,7 @@ static double order(const std::string &options, double G)
 
 PARAMETER_TEST(Sweep, EveryTransferAndFrame, ShapeOrder, ValuesIn(shapes))
 {
+  LONG_AFTER(2);
   const auto &shape = GetParam();
   const std::string name = shape.options;
   const bool linear = name.find("linear") != std::string::npos;

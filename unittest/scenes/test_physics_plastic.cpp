@@ -153,6 +153,7 @@ static Tube tube(double h, double p, double nu, double yield)
 
 TEST(Tube, InternalPressure)
 {
+  LONG_CASE();
   const double k = 0.005, b = 2.0;
   for (const double nu : {0.3, 0.45}) {
     const double E = 2.0 * (1.0 + nu), factor = 2.0 * (1.0 - nu * nu) * b / E;
@@ -189,6 +190,7 @@ TEST(Tube, InternalPressure)
 
 TEST(TaylorBar, SteelThatHeats)
 {
+  LONG_CASE();
   const double h = 0.0004, d = 0.25 * h;    // d: half the spacing of points
   Scene run(
       space("si", "f f f", strprintf("0 %.17g 0 %.17g 0 %.17g", 19 * h, 19 * h, 86 * h), 1,

@@ -110,6 +110,7 @@ TEST(StiffnessRatio, TimeStep)
 
 TEST(DensityRatio, ColumnsAtRest)
 {
+  LONG_CASE();
   const double g = 10.0, h = 0.05, c = 40.0, K = 1000.0 * c * c, p0 = 1000.0 * g, gamma = 1.4;
   const double c_gas = sqrt(gamma * p0);
   for (const bool above : {false, true})
@@ -168,6 +169,7 @@ TEST(DensityRatio, ColumnsAtRest)
 
 TEST(DensityRatio, DamBreakUnderGas)
 {
+  LONG_CASE();
   const double h = 0.125, c = 20.0, K = 1000.0 * c * c, c_gas = 60.0, gamma = 1.4;
   const double p0 = c_gas * c_gas / gamma;
   double front[2] = {0.0, 0.0};

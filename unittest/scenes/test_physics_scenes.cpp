@@ -17,6 +17,7 @@ using namespace MPM_TEST;
 
 TEST(TaylorBar, OfhcCopper)
 {
+  LONG_CASE();
   const double h = 0.0005, d = 0.25 * h;    // d: half the spacing of points
   Scene run;
   // a quarter of the bar
@@ -61,6 +62,7 @@ TEST(TaylorBar, OfhcCopper)
 PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
                Values("apic", "aflip 1.0", "flip 0.99 scheme musl"))
 {
+  LONG_AFTER(1);
   static const double front[][2] = {{.41, 1.11},  {.84, 1.22},  {1.19, 1.44}, {1.43, 1.67},
                                     {1.63, 1.89}, {1.83, 2.11}, {1.98, 2.33}, {2.20, 2.56},
                                     {2.32, 2.78}, {2.51, 3.00}, {2.65, 3.22}, {2.83, 3.44},
@@ -229,6 +231,7 @@ PARAMETER_TEST(GrainOnBlock, Momentum, const char *,
                Values("transfer apic", "transfer flip 1.0 scheme musl",
                       "frame total transfer apic"))
 {
+  LONG_AFTER(1);
   for (const bool friction : {false, true}) {
     SCOPED_TRACE(friction ? "friction" : "no friction");
     Scene run(grain_on_block(GetParam(),
@@ -280,6 +283,7 @@ PARAMETER_TEST(GrainOnBlock, Momentum, const char *,
 
 PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
 {
+  LONG_AFTER(1);
   const double ratio = 25.0e-6 / 400.0e-6;
   const double m = 1.308997e-3 * ratio, k = 1.03584e6 * ratio, Z = 46.40955 * ratio;
 
@@ -353,6 +357,7 @@ PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
 
 TEST(GrainAtRest, HundredThousandSteps)
 {
+  LONG_CASE();
   for (const char *options : {"transfer apic", "transfer flip 0.99 scheme musl"}) {
     Scene run(
         strprintf("units si\nboundary p p f\natom_style hybrid sphere mpm\ncomm_modify vel yes\n"

@@ -76,6 +76,7 @@ Incline flow(double degrees, int cells, double start, double time)
 
 TEST(GranularFlow, BagnoldProfile)
 {
+  LONG_CASE();
   const Incline at24 = flow(24.0, 20, 0.22, 1.2);
   EXPECT_NEAR(measured("G2 surface velocity at 24 degrees", at24.surface), 1.0, 0.03);
   EXPECT_LT(measured("G2 rms of the profile", at24.rms), 0.03);
@@ -172,6 +173,7 @@ TEST(InfiniteSlope, Acceleration)
 
 TEST(ColumnCollapse, RunOut)
 {
+  LONG_CASE();
   const double L0 = 0.1, h = 0.00625;
   struct {
     const char *law;

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_TEST_CELL_SCENES_H
 #define MPM_TEST_CELL_SCENES_H
@@ -16,8 +16,8 @@
 
 namespace MPM_NS {
 
-/** Cells of [0,1]^dim: which of them are wet, and the coefficients of the faces between them. Faces of the
- *  box are closed. */
+/** Cells of [0,1]^dim: which of them are wet, and the coefficients of the faces between them. Faces
+ *  of the box are closed. */
 struct CellScene {
   int dim, n;    ///< cells along an axis
   std::function<bool(const double *)> wet = [](const double *) {
@@ -58,8 +58,8 @@ struct CellScene {
       for (i[1] = shift[1]; i[1] < shift[1] + n; i[1]++)
         for (i[2] = shift[2]; i[2] < shift[2] + (dim == 3 ? n : 1); i[2]++) f(i);
   }
-  /** Coefficient of the upper face of a cell along axis d. It is 0 between two dry cells and at faces of the
-   *  box. Periodic images have the coefficients of the canonical cells. */
+  /** Coefficient of the upper face of a cell along axis d. It is 0 between two dry cells and at
+   *  faces of the box. Periodic images have the coefficients of the canonical cells. */
   double face(const int *index, int d) const
   {
     int upper[3] = {index[0], index[1], index[2]}, canonical[3];
@@ -177,8 +177,8 @@ class CellSystem : public LinearSystem {
   }
 };
 
-/** The shapes of part O7 of the reference values: a tank with a sloping surface, a disk, and a tank with 40
- *  small disks (drops). */
+/** The shapes of part O7 of the reference values: a tank with a sloping surface, a disk, and a tank
+ *  with 40 small disks (drops). */
 inline bool sloping(const double *x)
 {
   return x[1] < 0.5 + 0.2 * (x[0] - 0.5);

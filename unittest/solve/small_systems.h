@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_TEST_SMALL_SYSTEMS_H
 #define MPM_TEST_SMALL_SYSTEMS_H
@@ -40,7 +40,8 @@ class System : public LinearSystem {
   Operator A, M;
 };
 
-/** Operator of a rod: a chain of n unknowns joined by unit springs, with both ends fixed (held) or free. */
+/** Operator of a rod: a chain of n unknowns joined by unit springs, with both ends fixed (held) or
+ *  free. */
 inline System::Operator rod(int n, bool held)
 {
   return [=](const double *x, double *y) {

@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_TEST_SOLID_SCENES_H
 #define MPM_TEST_SOLID_SCENES_H
 
-// Linear elasticity of points with B-splines on a lattice, as systems of equations for the displacements
-// of the nodes.
+// Linear elasticity of points with B-splines on a lattice, as systems of equations for the
+// displacements of the nodes.
 
 #include "solve/krylov.h"
 #include "solve/spline_multigrid.h"
@@ -55,7 +55,8 @@ class SolidSystem : public LinearSystem {
   Preconditioner preconditioner = MULTIGRID;
   int64_t napply = 0;
 
-  /** mine(x): whether a point is on this rank. ranks_of: makes the ranks once the blocks are known. */
+  /** mine(x): whether a point is on this rank. ranks_of: makes the ranks once the blocks are
+   *  known. */
   explicit SolidSystem(
       const SolidScene &scene,
       const std::function<bool(const double *)> &mine =
@@ -198,8 +199,8 @@ class SolidSystem : public LinearSystem {
  private:
   std::vector<double> moved;
 
-  /** C [dim*dim][dim*dim]: volume times dS/dH, the derivative of the stress by the displacement gradient.
-   *  Component [a][l] of either has the index l*dim + a. */
+  /** C [dim*dim][dim*dim]: volume times dS/dH, the derivative of the stress by the displacement
+   *  gradient. Component [a][l] of either has the index l*dim + a. */
   void stiffness(const Point &point, double *C) const
   {
     const int m = dim * dim;
@@ -211,8 +212,8 @@ class SolidSystem : public LinearSystem {
                 point.mu * ((a == b && l == k) + (a == k && l == b)) +
                 (a == l && b == k ? point.lambda : 0.0);
   }
-  /** Weights w and their derivatives g (per spacing) along an axis. Returns the index of the first node
-   *  that a point reaches. */
+  /** Weights w and their derivatives g (per spacing) along an axis. Returns the index of the first
+   *  node that a point reaches. */
   int along(double x, double *w, double *g) const
   {
     const double s = x / scene.h;

@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// Poisson's equation on cells, and its multigrid preconditioner: against the equations as they are written, exact
-// pressures, and iterations of other solvers.
+// Poisson's equation on cells, and its multigrid preconditioner: against the equations as they are
+// written, exact pressures, and iterations of other solvers.
 
 #include "cell_scenes.h"
 
@@ -72,7 +72,8 @@ TEST(CellOperator, IsTheEquations)
   }
 }
 
-// Conjugate gradients need a preconditioner that is symmetric and positive definite, also where the period is odd.
+// Conjugate gradients need a preconditioner that is symmetric and positive definite, also where the
+// period is odd.
 TEST(CellMultigrid, IsSymmetric)
 {
   for (const int dim : {2, 3})
@@ -92,9 +93,9 @@ TEST(CellMultigrid, IsSymmetric)
     }
 }
 
-// Iterations to 1e-8 are at most 1.5 times those of conjugate gradients that are preconditioned by cosine transforms
-// of the box.  With levels that are discretizations of the same equation they do not depend on the number of cells: 64 times
-// as many are allowed two more.
+// Iterations to 1e-8 are at most 1.5 times those of conjugate gradients that are preconditioned by
+// cosine transforms of the box. With levels that are discretizations of the same equation they do
+// not depend on the number of cells: 64 times as many are allowed two more.
 TEST(CellMultigrid, Iterations)
 {
   struct Shape {
@@ -120,7 +121,8 @@ TEST(CellMultigrid, Iterations)
   }
 }
 
-// Without a preconditioner but the diagonal they are those of plain conjugate gradients: 116 and 231 for the tank.
+// Without a preconditioner but the diagonal they are those of plain conjugate gradients: 116 and
+// 231 for the tank.
 TEST(CellOperator, IterationsWithTheDiagonal)
 {
   CellScene scene{2, 32};
@@ -133,10 +135,11 @@ TEST(CellOperator, IterationsWithTheDiagonal)
   EXPECT_NEAR(fine.iterations(), 231, 23);
 }
 
-// Iterations in 3d, with densities that differ by 1 to 1e4 from place to place, and in a labyrinth. There are no
-// reference values for these: 21 and 27 are 1.5 times those by cosine transforms in the sloping tank of 32 and of 64 cells, to which part O7 of
-// the reference values binds that tank, and 1.45 is the growth that it allows when spacings are halved. Measured are 11, 11, and 1.2, and 14 in
-// the labyrinth, where conjugate gradients alone take as many as its way is long.
+// Iterations in 3d, with densities that differ by 1 to 1e4 from place to place, and in a labyrinth.
+// There are no reference values for these: 21 and 27 are 1.5 times those by cosine transforms in
+// the sloping tank of 32 and of 64 cells, to which part O7 of the reference values binds that tank,
+// and 1.45 is the growth that it allows when spacings are halved. Measured are 11, 11, and 1.2, and
+// 14 in the labyrinth, where conjugate gradients alone take as many as its way is long.
 TEST(CellMultigrid, IterationsOfHardCases)
 {
   CellScene ball{3, 24};
@@ -162,7 +165,8 @@ TEST(CellMultigrid, IterationsOfHardCases)
   EXPECT_LE(most, 27);
   EXPECT_LE(most, 1.45 * least);
 
-  // walls between cells, every second one with a gap at the other end: large cells must not join both sides
+  // walls between cells, every second one with a gap at the other end: large cells must not join
+  // both sides
   CellScene labyrinth{2, 64};
   labyrinth.open = [](const int *i, int d) {
     return d == 1 && i[1] % 3 == 0 && (i[1] % 2 ? i[0] > 0 : i[0] < 63) ? 0.0 : 1.0;
@@ -172,7 +176,8 @@ TEST(CellMultigrid, IterationsOfHardCases)
   EXPECT_LE(winding.iterations(), 60);
 }
 
-// A tank under gravity that is closed but for its surface: the pressure is the depth, exactly, also with shares of faces.
+// A tank under gravity that is closed but for its surface: the pressure is the depth, exactly, also
+// with shares of faces.
 TEST(CellMultigrid, WaterAtRest)
 {
   for (const int dim : {2, 3}) {
@@ -207,8 +212,9 @@ TEST(CellMultigrid, WaterAtRest)
   }
 }
 
-// One pool without a surface between two thin walls, next to one with a surface: they share larger cells, and no water. 30
-// iterations to 1e-12 are 1.5 times what the 14 by cosine transforms to 1e-8, as above, come to; 13 are measured.
+// One pool without a surface between two thin walls, next to one with a surface: they share larger
+// cells, and no water. 30 iterations to 1e-12 are 1.5 times what the 14 by cosine transforms to
+// 1e-8, as above, come to; 13 are measured.
 TEST(CellMultigrid, Pools)
 {
   CellScene two{2, 30};
@@ -254,8 +260,9 @@ TEST(CellMultigrid, Pools)
   EXPECT_TRUE(report.converged()) << report.describe();
 }
 
-// Cells of their own: with a surface (4 p = b), within walls (not in the system); and a box that is closed and periodic,
-// where 15 iterations are about those by cosine transforms in the sloping tank (14); 10 are measured.
+// Cells of their own: with a surface (4 p = b), within walls (not in the system); and a box that is
+// closed and periodic, where 15 iterations are about those by cosine transforms in the sloping tank
+// (14); 10 are measured.
 TEST(CellMultigrid, CellsOfTheirOwn)
 {
   CellScene drops{2, 9};
@@ -308,8 +315,9 @@ TEST(CellMultigrid, BubbleWithPressure)
   }
 }
 
-// A column of water that is released: pressures of part O6 of the reference values, by a series, with surfaces at the places
-// where cells end. Half a spacing from there the distance to the surface is half as long.
+// A column of water that is released: pressures of part O6 of the reference values, by a series,
+// with surfaces at the places where cells end. Half a spacing from there the distance to the
+// surface is half as long.
 TEST(CellMultigrid, ReleasedColumn)
 {
   double error[2];
@@ -326,7 +334,8 @@ TEST(CellMultigrid, ReleasedColumn)
     }
     A.finish();
     closed.multigrid.setup(A);
-    // acceleration -1 in each face along y that is no wall: div a = grad p balance at the bottom row
+    // acceleration -1 in each face along y that is no wall: div a = grad p balance at the bottom
+    // row
     auto b = closed.values([&](const int *i) {
       return i[1] == 0 ? 1.0 / n : 0.0;
     });
@@ -340,7 +349,8 @@ TEST(CellMultigrid, ReleasedColumn)
   EXPECT_GT(std::log2(error[0] / error[1]), 0.9);
 }
 
-// What is known outside counts infinitely: there are no factors of that, and it is said. The correction by the next level is left out then.
+// What is known outside counts infinitely: there are no factors of that, and it is said. The
+// correction by the next level is left out then.
 TEST(CellMultigrid, IsUsableOrSaysSo)
 {
   CellSystem system(CellScene{2, 32});

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -15,8 +15,8 @@
 
 using namespace MPM_NS;
 
-// A load on each node of a rod: x_i = i (n + 1 - i)/2, exactly; in exact arithmetic after n/2 iterations as load and rod
-// are symmetric.
+// A load on each node of a rod: x_i = i (n + 1 - i)/2, exactly; in exact arithmetic after n/2
+// iterations as load and rod are symmetric.
 TEST(ConjugateGradients, RodUnderItsWeight)
 {
   const int n = 50;

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -23,7 +23,8 @@ using namespace MPM_NS;
 
 namespace {
 
-/** Blocks of one triangle that rank me of n gives, some of them to rows that are not its own, and some of a place where it has given one. */
+/** Blocks of one triangle that rank me of n gives, some of them to rows that are not its own, and
+ *  some of a place where it has given one. */
 std::vector<MatrixBlock> blocks_of(int me, int n, int rows, int width)
 {
   std::vector<MatrixBlock> list;
@@ -57,7 +58,8 @@ Eigen::MatrixXd dense(const std::vector<std::vector<MatrixBlock>> &lists, int ro
 
 }    // namespace
 
-// Products, blocks, the next level, and the whole matrix on ranks of which one has no rows are those of the dense matrix.
+// Products, blocks, the next level, and the whole matrix on ranks of which one has no rows are
+// those of the dense matrix.
 TEST(BlockRows, AreThoseOfTheMatrix)
 {
   constexpr int ROWS = 13, NEXT = 5;

@@ -1,9 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// What pairs of motions and forces tell of a matrix: against the recursion of Nocedal, and the secant equation.
+// What pairs of motions and forces tell of a matrix: against the recursion of Nocedal, and the
+// secant equation.
 
 #include "solve/quasi_newton.h"
 
@@ -48,7 +49,8 @@ VectorXd recursion(const std::deque<Pair> &pairs, const MatrixXd &H0, VectorXd f
 
 }    // namespace
 
-// more pairs than there is room for, parts of corrections, and pairs of several sequences with other forces in between
+// more pairs than there is room for, parts of corrections, and pairs of several sequences with
+// other forces in between
 TEST(QuasiNewton, IsTheRecursion)
 {
   for (const int n : {3, 37, 64}) {
@@ -86,7 +88,8 @@ TEST(QuasiNewton, IsTheRecursion)
   }
 }
 
-// the last motion is what H makes of its change of forces; what has no positive curvature is no pair
+// the last motion is what H makes of its change of forces; what has no positive curvature is no
+// pair
 TEST(QuasiNewton, KnowsItsLastMotion)
 {
   const int n = 21;

@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-// labels: unit
+// labels: unit ranks
 // mpi: 1 2 3 4
 
-// The stiffness of points that are distributed over ranks in patches, with its multigrid: the same iterations and
-// displacements as on one rank.
+// The stiffness of points that are distributed over ranks in patches, with its multigrid: the same
+// iterations and displacements as on one rank.
 
 #include "field/mpm_halo.h"
 #include "field/mpm_lattice_ranks.h"

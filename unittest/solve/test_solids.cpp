@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// Multigrid for the stiffness of points with B-splines: symmetry, exact solutions, and iterations, which must not depend on
-// the number of points.
+// Multigrid for the stiffness of points with B-splines: symmetry, exact solutions, and iterations,
+// which must not depend on the number of points.
 
 #include "solid_scenes.h"
 #include "thread_ranks.h"
@@ -50,7 +50,8 @@ double weight(const double *, int a)
   return a == 1 ? -1.0 : 0.0;
 }
 
-/** Products with the matrix that conjugate gradients need for two decades, from those for eight; solutions are true. */
+/** Products with the matrix that conjugate gradients need for two decades, from those for eight;
+ *  solutions are true. */
 double products(SolidSystem &system)
 {
   system.setup();
@@ -94,7 +95,8 @@ SolidScene slope(int n)
 
 }    // namespace
 
-// Symmetric and positive definite, with constraints that are not along axes, masses, an odd period, and in 3d.
+// Symmetric and positive definite, with constraints that are not along axes, masses, an odd period,
+// and in 3d.
 TEST(SplineMultigrid, IsSymmetric)
 {
   auto ring = block(2, 13);
@@ -128,8 +130,8 @@ TEST(SplineMultigrid, IsSymmetric)
   }
 }
 
-// A bar that is pulled by its own weight along itself, without lateral strain: u' = g (1 - x)/M, exactly at the
-// second order of the functions.
+// A bar that is pulled by its own weight along itself, without lateral strain: u' = g (1 - x)/M,
+// exactly at the second order of the functions.
 TEST(SplineMultigrid, BarUnderItsWeight)
 {
   auto scene = block(2, 24);
@@ -167,8 +169,8 @@ TEST(SplineMultigrid, BarUnderItsWeight)
   EXPECT_NEAR(u[1] - u[0], exact(1.0 - 0.75 / 24) - exact(0.5 - 0.75 / 24), 1.0 / (24 * 24 * M));
 }
 
-// Products with the matrix for two decades: at most 25 (each is one pass from points to nodes, for which this is the bound that the solver
-// was built for), and as many for 64 times as many points.
+// Products with the matrix for two decades: at most 25 (each is one pass from points to nodes, for
+// which this is the bound that the solver was built for), and as many for 64 times as many points.
 TEST(SplineMultigrid, ProductsDoNotGrow)
 {
   double coarsest = 0.0;
@@ -180,7 +182,8 @@ TEST(SplineMultigrid, ProductsDoNotGrow)
   }
 }
 
-// The same with five levels, and in 3d with three: coarse levels have the smoother of the finest one.
+// The same with five levels, and in 3d with three: coarse levels have the smoother of the finest
+// one.
 TEST(SplineMultigrid, ManyLevels)
 {
   auto many = block(2, 64);
@@ -239,8 +242,9 @@ TEST(SplineMultigrid, ProductsOfHardCases)
   EXPECT_LE(products(block(3, 3)), 25.0);
 }
 
-// Levels of multigrid change the way and not the answer. Blocks of nodes as preconditioner need many times the products. A
-// few nodes of the slope have motions that no point sees: energies are compared.
+// Levels of multigrid change the way and not the answer. Blocks of nodes as preconditioner need
+// many times the products. A few nodes of the slope have motions that no point sees: energies are
+// compared.
 TEST(SplineMultigrid, SameSolutionAsBlocks)
 {
   SolidSystem system(slope(16));
@@ -256,7 +260,8 @@ TEST(SplineMultigrid, SameSolutionAsBlocks)
   EXPECT_GT(report.iterations, 3 * needed);
 }
 
-// Nothing holds a body: forces that balance move it by no more than its deformation, and are solved for.
+// Nothing holds a body: forces that balance move it by no more than its deformation, and are solved
+// for.
 TEST(SplineMultigrid, FreeBody)
 {
   auto scene = block(2, 16);
@@ -272,8 +277,9 @@ TEST(SplineMultigrid, FreeBody)
   EXPECT_TRUE(report.converged()) << report.describe();
 }
 
-// Systems of few unknowns are factorized as a whole: a solution takes one iteration and what the shift of the diagonal costs, with
-// constraints along slopes, masses, periodic axes, cells that are cut anywhere, and ratios of stiffness.
+// Systems of few unknowns are factorized as a whole: a solution takes one iteration and what the
+// shift of the diagonal costs, with constraints along slopes, masses, periodic axes, cells that are
+// cut anywhere, and ratios of stiffness.
 TEST(SplineMultigrid, FactorsOfAll)
 {
   auto heavy = slope(12), patches = block(2, 16), ring = block(2, 13), cubic = block(2, 12);
@@ -297,8 +303,8 @@ TEST(SplineMultigrid, FactorsOfAll)
   EXPECT_GT(system.multigrid->levels(), 1);
 }
 
-// Factors in an envelope against those of a dense matrix: numbers of unknowns that fill blocks or not, parts that are not joined, and all
-// instruction sets.
+// Factors in an envelope against those of a dense matrix: numbers of unknowns that fill blocks or
+// not, parts that are not joined, and all instruction sets.
 TEST(EnvelopeFactors, SolveLikeDenseOnes)
 {
   for (const char *isa : {"baseline", "avx2", "avx512"})
@@ -332,7 +338,8 @@ TEST(EnvelopeFactors, SolveLikeDenseOnes)
     }
 }
 
-/** A matrix on a lattice of n by m points in pieces of so many columns, a shift apart from singular. */
+/** A matrix on a lattice of n by m points in pieces of so many columns, a shift apart from
+ *  singular. */
 Eigen::SparseMatrix<double> springs(int n, int m, int piece, double shift = 0.01)
 {
   std::vector<Eigen::Triplet<double>> entries;
@@ -352,8 +359,9 @@ Eigen::SparseMatrix<double> springs(int n, int m, int piece, double shift = 0.01
   return A;
 }
 
-// Halves that are eliminated towards the middle: the same on any number of ranks, bit by bit, each of which has a half of the factors, and
-// right in one piece, in pieces, and where hardly anything is in the halves.
+// Halves that are eliminated towards the middle: the same on any number of ranks, bit by bit, each
+// of which has a half of the factors, and right in one piece, in pieces, and where hardly anything
+// is in the halves.
 TEST(EnvelopeFactors, HalvesOnRanks)
 {
   for (const auto &[n, m, piece] : {std::array<int, 3>{60, 9, 1000},
@@ -401,8 +409,8 @@ TEST(EnvelopeFactors, HalvesOnRanks)
   }
 }
 
-// Factors in single precision are those of a matrix that is near along every direction, soft ones, too, in half of the memory: with halves or
-// without, and with all instruction sets.
+// Factors in single precision are those of a matrix that is near along every direction, soft ones,
+// too, in half of the memory: with halves or without, and with all instruction sets.
 TEST(EnvelopeFactors, RoundedOnes)
 {
   constexpr int N = 60, M = 9;
@@ -436,7 +444,8 @@ TEST(EnvelopeFactors, RoundedOnes)
       }
 }
 
-// Nodes come to other ranks, which also know some of others, and keep their places; not if one is missing, new, or another one.
+// Nodes come to other ranks, which also know some of others, and keep their places; not if one is
+// missing, new, or another one.
 TEST(SharedNodes, KeepTheirOrder)
 {
   constexpr int NRANKS = 3, N = 20, NONE = -1;

@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: mpi physics
+// labels: mpi physics ranks
 // mpi: 1 2 3 4
 // timeout: 900
 

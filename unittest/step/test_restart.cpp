@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: restart smoke
+// labels: restart smoke ranks
 // mpi: 1 2 3
 // timeout: 900
 

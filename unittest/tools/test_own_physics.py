@@ -1,7 +1,7 @@
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
 #
-# labels: plugin examples physics
+# labels: plugin examples physics long
 # sanitize: no
 # timeout: 400
 """Physics from outside: examples/own-physics is built as a plugin, and its scalar diffuses as the exact

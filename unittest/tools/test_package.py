@@ -1,7 +1,7 @@
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
 #
-# labels: build
+# labels: build long
 # sanitize: no
 # timeout: 120
 """The Debian package that tools/package_deb.sh makes: what is in it, what it depends on, and that its lmp runs the

@@ -80,7 +80,7 @@ CODE
     compile "$source" "$(object_of "$source")"
   done
   march+=(-DMPM_ISA=base)
-  compile "$src/material/batch_isa.cpp" batch_isa.o "${march[@]}"
+  compile "$src/material/batch_kernels_isa.cpp" batch_isa.o "${march[@]}"
   compile "$src/law/laws_isa.cpp" laws_isa.o "${march[@]}" -g0
   for family in $(grep '^ *X(' "$src/law/list.h" | grep -o '[a-z]*'); do
     laws=laws_$family.cpp

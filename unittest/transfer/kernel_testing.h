@@ -28,8 +28,8 @@ namespace MPM_TEST {
 
 using Reals = std::vector<double>;
 
-/** Whether this is a build with sanitizers (test_sanitize.sh). Tests then need to reach each place in the
- *  code only, and repeat less often. */
+/** Whether this is a build with sanitizers (test_sanitize.sh). Tests then need to reach each place
+ *  in the code only, and repeat less often. */
 #if defined(MPM_SANITIZED)
 constexpr bool SANITIZED = true;
 #else
@@ -93,15 +93,16 @@ int g2p(MPM_NS::G2P kernel, Points &points, const double *tile, double *L = null
   return kernel(points.rows(), points.step, points.first, points.last, points.base, tile, L);
 }
 
-/** A tile and its shape. margin: nodes in front of the block; last: largest tile index of a base node;
- *  reach: nodes of the stencil behind a base node. */
+/** A tile and its shape. margin: nodes in front of the block; last: largest tile index of a base
+ *  node; reach: nodes of the stencil behind a base node. */
 struct TileShape {
   int dim, stride_x, stride_y, margin, last, reach;
   double *tile;
   int reals;
 };
 
-/** Expects that prefetch, flush, load, and load_mean move random boxes of a tile to blocks and back. */
+/** Expects that prefetch, flush, load, and load_mean move random boxes of a tile to blocks and
+ *  back. */
 inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileShape &t)
 {
   const int side = MPM_NS::block_side(t.dim), shift = side - t.margin, nreal = kernels.nreal;

@@ -12,7 +12,7 @@
 // Transfer kernels of every instruction set: agreement with the reference, and what a transfer must
 // do whatever the implementation (conservation, exact fields, rows left alone).
 
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "math/matrix.h"
 #include "transfer/kernel_testing.h"
 #include "transfer/shape.h"
@@ -652,8 +652,8 @@ class Tables : public ::testing::TestWithParam<const char *> {
   }
 };
 
-/** Rows to a batch: F <- (I + dt L) F, and Kirchhoff to Cauchy stress with the old volume. Back with
- *  the new volume, but not for points that are inverted. */
+/** Rows to a batch: F <- (I + dt L) F, and Kirchhoff to Cauchy stress with the old volume. Back
+ *  with the new volume, but not for points that are inverted. */
 TEST_P(Tables, BatchesAgreeWithMatrixAlgebra)
 {
   for (int dim : {2, 3})

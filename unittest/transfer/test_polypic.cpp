@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// labels: physics mpi restart input
+// labels: physics mpi restart input ranks
 // mpi: 1 3
 
 // Polynomial particle in cell with bilinear modes: transfer polypic.
@@ -63,7 +63,8 @@ double field(int dim, const double *x, int i, int along)
 }    // namespace
 
 // a field of products of coordinates goes to the nodes and back without a change, at all points, if
-// those are given its modes, whatever the instruction set; apic, which has no such modes, changes it
+// those are given its modes, whatever the instruction set; apic, which has no such modes, changes
+// it
 
 TEST(Polypic, RoundTrip)
 {
@@ -108,8 +109,9 @@ TEST(Polypic, RoundTrip)
         }
 }
 
-// momentum and angular momentum (with that of the affine fields) in elastic motion; with musl and usavg, points move
-// with other velocities than they have: the manual promises 1e-4 of angular momentum, and what it changes is known
+// momentum and angular momentum (with that of the affine fields) in elastic motion; with musl and
+// usavg, points move with other velocities than they have: the manual promises 1e-4 of angular
+// momentum, and what it changes is known
 
 TEST(Polypic, Conservation)
 {
@@ -143,8 +145,8 @@ TEST(Polypic, Conservation)
     }
 }
 
-// Taylor-Green vortices of a fluid without viscosity, two wave lengths of 16 cells: what transfers take of
-// the kinetic energy, as the viscosity that would do the same, nu = -ln(E/E0)/(4 k^2 t)
+// Taylor-Green vortices of a fluid without viscosity, two wave lengths of 16 cells: what transfers
+// take of the kinetic energy, as the viscosity that would do the same, nu = -ln(E/E0)/(4 k^2 t)
 
 static double viscosity(const std::string &options)
 {

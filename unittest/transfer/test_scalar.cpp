@@ -10,7 +10,7 @@
 
 // Transfers of one number: all instruction sets against the plain loops, sums, and linear fields.
 
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "transfer/kernel_testing.h"
 #include "transfer/scalar.h"
 

@@ -798,6 +798,7 @@ TEST(Motion, Displacement)
 // a bar is twisted by the motion of its end, given in three ways: the same torque, that of the theory, and its work is what the bar stores
 TEST(Torsion, ReactionAndWork)
 {
+  LONG_CASE();
   if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
   // 8 long with a section of 2 x 2, G = 1: G J angle/length with J = 0.1406 a^4
   const double angle = 0.2, theory = 0.1406 * 16.0 * angle / 8.0;
@@ -1523,6 +1524,7 @@ region flying mpm/mesh STL 2.5 7 5 4 move v_shift NULL NULL rotate v_angle 7 5 4
 
 TEST_P(Decomposition, AnyRanksGiveTheSame)
 {
+  LONG_AFTER(6);
   OnRanks brick(scene, "run 100\n");
   Scene tiled(scene +
               "comm_style tiled\nbalance 1.0 rcb\nfix lb all balance 20 1.0 rcb\nrun 100\n");
@@ -1541,6 +1543,7 @@ TEST_P(Decomposition, AnyRanksGiveTheSame)
 // to the last bit, as the manual promises for the run after write_restart and the one from the file
 TEST_P(Decomposition, RestartContinuesBitwise)
 {
+  LONG_AFTER(11);
   Continued run(scene, 33, grid + fixes + "timestep 0.04\n", 27);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
   for (auto *fix : run.whole.lmp->modify->get_fix_by_style("^mpm/boundary$")) {

@@ -319,6 +319,7 @@ SERIAL_TEST(RoundDisk, OnABody)
 
 SERIAL_TEST(RollingSphere, OnATurnedPlane)
 {
+  LONG_CASE();
   const double turn = M_PI / 6;
   const std::string wall = strprintf("region p plane 0.75 2 0 %.15g %.15g 0\n"
                                      "fix w all mpm/boundary region p separate friction MU",
@@ -445,6 +446,7 @@ void expect_ball(const Incline &incline, double h, const Wall &wall)
 
 SERIAL_TEST(SlidingBlock, OnRegions)
 {
+  LONG_CASE();
   const ScratchFile plate("plate.stl", turned_plate(30, 2.0));
   const Wall plane15 = {"plane of 15 degrees", turned_plane(15, 1.3), 15.0, 1.3},
              plane30 = {"plane of 30 degrees", turned_plane(30, 2.0), 30.0, 2.0},
@@ -470,6 +472,7 @@ SERIAL_TEST(SlidingBlock, OnRegions)
 // Balls that are round, as RoundDisk; R/6.
 SERIAL_TEST(RoundBall, OnRegions)
 {
+  LONG_CASE();
   constexpr double h = 0.5 / 6;
   const ScratchFile plate("plate.stl", turned_plate(30, 2.0));
   expect_ball({30, 0.6}, h, {"mesh of 30 degrees", "mpm/mesh " + plate.name + " 1 0 0 0", 30, 2.0});

@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
 // version 2; see the file LICENSE.
 
-// labels: physics
+// labels: physics ranks
 // mpi: 1 2
 
 // Keyword apart of fix mpm: a solid whose points no longer share enough nodes is told of, and nothing else is.

@@ -648,7 +648,7 @@ void FixMPMRigid::act(double dt, Stage stage)
     move(dt);
 
     // The nodes were counted with the new velocity of the body. Impulses on it change its kinetic
-    // energy with the mean of both: see FixMPMBoundary::Wall::half_change(). The sum is the same on
+    // energy with the mean of both: see MPMWallMotion::half_change(). The sum is the same on
     // all ranks
 
     double faster = 0.0;

@@ -15,6 +15,7 @@
 #include "field/mpm_point_map.h"
 #include "field/mpm_refined_body.h"
 #include "modify.h"
+#include "walls/fix_mpm_boundary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,11 +60,11 @@ MPMNodeWalls MPMContactBody::walls_at(const double *record) const
   walls.held = (char) (held[node] & ALL);
   for (int d = 0; d < 3; d++) {
     walls.start[d] = record[d];
-    walls.velocity[d] = foreseen.held[3 * node + d];
-    const int place = foreseen.mirrored[3 * node + d];
+    walls.velocity[d] = predicted.held[3 * node + d];
+    const int place = predicted.mirrored[3 * node + d];
     if (place == 0 || walls.held >> d & 1) continue;
     walls.mirrored |= 1 << d;
-    const auto &mirror = foreseen.mirrors[std::abs(place) - 1];
+    const auto &mirror = predicted.mirrors[std::abs(place) - 1];
     walls.velocity[d] = mirror.wall[d] + (place > 0 ? mirror.odd[d] : -mirror.odd[d]);
     walls.mass[d] = mirror.mass;
   }
@@ -75,9 +76,9 @@ void MPMContactBody::move_mirrors(const double *record, const std::array<double,
 {
   const int64_t node = node_of(record);
   for (int d = 0; d < field->lattice.dim; d++) {
-    const int place = foreseen.mirrored[3 * node + d];
+    const int place = predicted.mirrored[3 * node + d];
     if (place == 0) continue;
-    auto &mirror = foreseen.mirrors[std::abs(place) - 1];
+    auto &mirror = predicted.mirrors[std::abs(place) - 1];
     const double change = (record[d] - before[d]) * record[3] / mirror.mass;
     mirror.odd[d] += place > 0 ? change : -change;
   }
@@ -207,7 +208,7 @@ bool MPMContactBodies::find_shared()
   for (auto &body : list) {
     body.held.assign(body.field->grid.nnodes(), 0);
     for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
-      dynamic_cast<FixMPMBoundary *>(fix)->mark_held(*body.field, body.held);
+      dynamic_cast<FixMPMBoundary *>(fix)->mark_prescribed(*body.field, body.held);
   }
   int any = !shared.empty(), all;
   MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
@@ -280,9 +281,9 @@ void MPMContactBodies::map_content(MPMContactBody &body, bool with_volumes)
 
 void MPMContactBodies::predict_walls(MPMContactBody &body)
 {
-  body.foreseen.reset((int64_t) body.held.size());
+  body.predicted.reset((int64_t) body.held.size());
   for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
-    dynamic_cast<FixMPMBoundary *>(fix)->foresee(*body.field, body.near, body.foreseen);
+    dynamic_cast<FixMPMBoundary *>(fix)->predict(*body.field, body.near, body.predicted);
 }
 
 int MPMContactBodies::records(const MPMSharedBlock &c, int n, double *record[MOST])
@@ -366,7 +367,8 @@ double MPMContactBodies::memory_usage() const
 {
   double bytes = shared.capacity() * sizeof(MPMSharedBlock);
   for (const auto &body : list)
-    bytes += (body.gradient.capacity() + body.fraction.capacity() + body.foreseen.held.capacity()) *
+    bytes +=
+        (body.gradient.capacity() + body.fraction.capacity() + body.predicted.held.capacity()) *
         sizeof(double);
   return bytes;
 }

@@ -13,7 +13,7 @@
 #include "contact/mpm_node_contact.h"
 #include "field/mpm_reach.h"
 #include "pointers.h"
-#include "walls/fix_mpm_boundary.h"
+#include "walls/mpm_mirror_nodes.h"
 
 #include <array>
 #include <cstdint>
@@ -39,8 +39,8 @@ struct MPMContactBody {
   std::vector<double> gradient = {};     ///< [node][3] of the volume (or mass)
   std::vector<double> fraction = {};     ///< [node] volume over that of the node
   std::vector<double> water = {};    ///< [node][3] of MPMPorePressure::surface_force(); empty: none
-  std::vector<char> held = {};       ///< bits, FixMPMBoundary::mark_held()
-  FixMPMBoundary::Foreseen foreseen = {};
+  std::vector<char> held = {};       ///< bits, FixMPMBoundary::mark_prescribed()
+  MPMPredictedVelocities predicted = {};
 
   /** Index of the node with this record. */
   int64_t node_of(const double *record) const;

@@ -176,12 +176,12 @@ void MPMContactSolver::find_groups()
     const MPMContactBody &body = bodies[k];
     const Grid &grid = body.field->grid;
     std::vector<int> &first = first_with_mirror;
-    first.assign(body.foreseen.mirrors.size(), -1);
+    first.assign(body.predicted.mirrors.size(), -1);
     for (int m = 0; m < n; m++) {
       const double *const record = coupled[m].node->record[k];
       for (int d = 0; d < grid.lattice.dim && record; d++) {
         const int64_t node = body.node_of(record);
-        const int place = std::abs(body.foreseen.mirrored[3 * node + d]) - 1;
+        const int place = std::abs(body.predicted.mirrored[3 * node + d]) - 1;
         if (place < 0) continue;
         if (first[place] < 0) first[place] = m;
         dependent.join(m, first[place]);

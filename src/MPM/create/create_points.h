@@ -16,11 +16,9 @@ CommandStyle(create_points,CreatePoints);
 #define LMP_CREATE_POINTS_H
 
 #include "command.h"
-#include "create/mpm_mesh_fields.h"
+#include "create/create_points_mesh.h"
 #include "declare/option.h"
-#include "elements/mpm_thin_body.h"
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -28,7 +26,6 @@ CommandStyle(create_points,CreatePoints);
 
 namespace MPM_NS {
 struct ImageBody;
-struct Mesh;
 class RelaxedPoints;
 }    // namespace MPM_NS
 
@@ -60,25 +57,9 @@ struct CreatePointsOptions {
   MPM_NS::Options declare(int dimension, bool has_radius);
 };
 
-/** Keywords of create_points for meshes. */
-struct CreatePointsMeshOptions {
-  double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
-  std::string part;    ///< physical group of the mesh; empty: all of it
-  bool by_type = false,
-       by_group = false;      ///< type is the number of the physical group; joins its name
-  MPMMeshFields::Data one;    ///< the entry that was read last
-  std::vector<MPMMeshFields::Data> data;       ///< data of the file that points get
-  std::vector<MPMMeshFields::Data> factors;    ///< factors on data, by name
-  MPMThinBody thin;                            ///< surfaces or lines, for points at nodes
-  int halve = 0;                               ///< number of times that elements are divided
-  double diameter = 0.0;
-  std::string group_id;
-
-  MPM_NS::Options declare(const std::string &command, int dimension, bool has_radius, bool nodes);
-};
-
-/** Command create_points: fills a region or the bodies of an image with material points on a regular
- *  lattice of sites, or makes a point at each node or for each element of a mesh, or at each row of a table.
+/** Command create_points: fills a region or the bodies of an image with material points on a
+ *  regular lattice of sites, or makes a point at each node or for each element of a mesh, or at
+ *  each row of a table.
  *
  *  Sites are at origin + (s + 1/2) spacing for integer s. Their numbering, the test against the
  *  region, the jitter, and the IDs are functions of the site alone. Ranks take equal shares of the
@@ -91,20 +72,9 @@ class CreatePoints : public Command, private CreatePointsOptions {
   ~CreatePoints() override;
   void command(int, char **) override;
 
-  static constexpr imageint NO_IMAGE =
-      ((imageint) IMGMAX << IMG2BITS) | ((imageint) IMGMAX << IMGBITS) | IMGMAX;
-
  private:
-  struct Site {    // a point to be made
-    double x[3];
-    double volume;
-    tagint tag;
-    int type = 0;                 // 0: the type of the command
-    double gray = 0.0;            // value of the image
-    imageint image = NO_IMAGE;    // of nodes of a mesh, wrapped into the periodic box
-  };
-  using Corners = std::array<double, 24>;    // relative to the center, see transfer/cpdi.h
-  struct Range {                             // consecutive sites along an axis
+  using Site = CreatePointsSite;
+  struct Range {    // consecutive sites along an axis
     bigint first = 0, n = 1;
     bigint end() const { return first + n; }
     bool contains(bigint s) const { return s >= first && s < end(); }
@@ -139,10 +109,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   std::unique_ptr<class MPMPointColumns> field_columns;    // the quantities of fields; null: none
   std::vector<double> grays;    // gray values of the points made here, for fields
 
-  std::vector<Site> mesh_sites;    // nodes or elements of a mesh
-  std::vector<Corners> corners;    // domains of elements; finally of the points of this rank
-  std::unique_ptr<class MPMMeshFields> mesh_fields;    // data of the points of a mesh, else null
-
+  std::unique_ptr<CreatePointsMesh> mesh;            // null: none
   std::unique_ptr<class CreatePointsTable> table;    // null: none
   std::vector<double> table_rows;                    // of the points made here
 
@@ -152,10 +119,6 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void parse_table(int, char **);
   void place_sites(const MPM_NS::Options &);
   void find_group(const MPM_NS::Options &, const std::string &name);
-  void find_nodes(const MPM_NS::Mesh &, const MPMThinBody &, const char *file);
-  void find_elements(const MPM_NS::Mesh &, const char *file);
-  void check_periodic(const MPM_NS::Mesh &, const char *file) const;
-  void wrap_sites(const char *file, const char *what);
   int owner(double *x) const;
   tagint largest_tag() const;
   void check_tags(tagint largest, bigint nmore) const;
@@ -171,7 +134,6 @@ class CreatePoints : public Command, private CreatePointsOptions {
   bigint make_mesh_points();
   bigint make_table_points();
   void send_and_make(std::vector<Site> &);
-  void set_domains(int first);
   void set_fields(int first);
   void set_columns(int first);
   void look_at_image(const bigint *s, Site &) const;
@@ -183,7 +145,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   {
     return box[0].contains(s[0]) && box[1].contains(s[1]) && box[2].contains(s[2]);
   }
-  double share_of(const bigint *s) const;
+  double volume_fraction(const bigint *s) const;
   double surface_share(const bigint *s) const;
   void find_split(const MPM_NS::Options &);
   void make_parts(const bigint *s, std::vector<Site> &) const;
@@ -191,7 +153,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   int for_parts(const bigint *s, const std::function<void(const double *x)> &visit) const;
   bigint make_relaxed_points();
   void add_relaxed_site(const bigint *s, const bigint *first, MPM_NS::RelaxedPoints &) const;
-  bool in_region(const bigint *s) const { return share_of(s) > 0.0; }
+  bool in_region(const bigint *s) const { return volume_fraction(s) > 0.0; }
   bool cut_site(const bigint *s, Site &) const;
   void point_position(const bigint *s, double *x) const;
   void for_sites(const Range *range, bigint first, bigint last,

@@ -378,8 +378,8 @@ void CreatePoints::parse_image(int narg, char **arg)
 }
 
 /* ----------------------------------------------------------------------
-   share of a site that is in the body of a surface. A site with only a sliver of the body gives it to the neighbor along
-   an axis that has the most of the body, so that no volume is lost
+   share of a site that is in the body of a surface. A site with only a sliver of the body gives it
+   to the neighbor along an axis that has the most of the body, so that no volume is lost
 ------------------------------------------------------------------------- */
 
 /** Visits the neighbors of a site along the axes. */

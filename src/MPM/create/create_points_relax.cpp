@@ -7,8 +7,8 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   create_points ... relax N: points that follow the surface of a region, with equal volumes
-   Samples of the body are spread over the ranks, in integers, so that all of them find the same points
+   create_points ... relax N: points that follow the surface of a region, with equal volumes Samples
+   of the body are spread over the ranks, in integers, so that all of them find the same points
 ------------------------------------------------------------------------- */
 
 #include "create/create_points.h"

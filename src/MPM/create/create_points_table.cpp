@@ -277,7 +277,7 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
                    given.volume,
                    id_column < 0 ? 0 : (bigint) at(id_column),
                    mine,
-                   CreatePoints::NO_IMAGE};
+                   CreatePointsSite::NO_IMAGE};
     for (int d = 0; d < dim; d++) point.x[d] = given.move[d] + given.scale * at(place[d]);
     double J = 1.0;
     if (nF) {
@@ -302,9 +302,9 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
   if (points.empty()) fail(fmt::format("has no points of type {}", given.part));
 }
 
-/** Warns of points that are the same except for round-off: they come from two files, or were written twice with different
- *  digits. Positions are sorted into cells of NEAR edges of a point, twice, with cells shifted by half of their width, so that
- *  hardly any pair is missed. */
+/** Warns of points that are the same except for round-off: they come from two files, or were
+ *  written twice with different digits. Positions are sorted into cells of NEAR edges of a point,
+ *  twice, with cells shifted by half of their width, so that hardly any pair is missed. */
 void CreatePointsTable::warn_of_near_points(const std::string &file) const
 {
   double volume = 0.0;
@@ -332,7 +332,8 @@ void CreatePointsTable::warn_of_near_points(const std::string &file) const
                  file, near.size(), NEAR, x[0], x[1], x[2]);
 }
 
-/** Moves points into the box from the next periodic images; refuses IDs and positions that occur twice. */
+/** Moves points into the box from the next periodic images; refuses IDs and positions that occur
+ *  twice. */
 void CreatePointsTable::check_points(const std::string &file)
 {
   const auto fail = [&](const std::string &what) {
@@ -433,9 +434,9 @@ bigint CreatePoints::make_table_points()
 void CreatePoints::set_columns(int first)
 {
   if (table) table->columns.set(first, table_rows);
-  if (mesh_fields) mesh_fields->set(first);
+  if (mesh) mesh->fields->set(first);
   const MPMPointColumns *columns = table ? &table->columns
-      : mesh_fields                      ? &mesh_fields->given()
+      : mesh                             ? &mesh->fields->given()
                                          : nullptr;
   const std::string missing = columns && columns->has_state() ? columns->missing() : "";
   if (!missing.empty() && comm->me == 0)

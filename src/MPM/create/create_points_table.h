@@ -50,7 +50,8 @@ struct CreatePointsTableOptions {
 /** The points of a table: rank 0 keeps all of them and hands out rows to the other ranks. */
 class CreatePointsTable : protected Pointers {
  public:
-  /** Reads and checks the file; stops with an error if it is not valid. type: of points that have none in the file. */
+  /** Reads and checks the file; stops with an error if it is not valid. type: of points that have
+   *  none in the file. */
   CreatePointsTable(LAMMPS *, const CreatePointsTableOptions &, int type, const char *file);
 
   struct Point {
@@ -63,7 +64,8 @@ class CreatePointsTable : protected Pointers {
   MPMPointColumns columns;
   bigint npoint = 0;    ///< points on all ranks
 
-  /** Points and values [n][width()] of the rows first to first + n - 1, on all ranks. Collective. */
+  /** Points and values [n][width()] of the rows first to first + n - 1, on all ranks.
+   *  Collective. */
   void rows(bigint first, int n, std::vector<Point> &, std::vector<double> &) const;
   /** Number of columns. */
   int width() const { return ncolumn; }

@@ -32,11 +32,11 @@ class MPMMeshFields : protected Pointers {
     double factor = 1.0;
   };
 
-  /** at_nodes: points are nodes, else elements. type: type of all points; with by_type, the type is instead the
-   *  tag of the physical group, or the index of the set in the file if sets have no tags. by_group: points join
-   *  groups with the names of their sets; missing groups are created. data: what points get from the file, as
-   *  from the columns of a table. Stops with an error if the file or the simulation lacks something, or if
-   *  nodes would have two types. */
+  /** at_nodes: points are nodes, else elements. type: type of all points; with by_type, the type is
+   *  instead the tag of the physical group, or the index of the set in the file if sets have no
+   *  tags. by_group: points join groups with the names of their sets; missing groups are created.
+   *  data: what points get from the file, as from the columns of a table. Stops with an error if
+   *  the file or the simulation lacks something, or if nodes would have two types. */
   MPMMeshFields(LAMMPS *, const MPM_NS::Mesh &, bool at_nodes, int type, bool by_type,
                 bool by_group, const std::vector<Data> &);
 

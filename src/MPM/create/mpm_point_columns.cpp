@@ -53,7 +53,8 @@ const std::vector<Known> known = {
     {"image", {"ix", "iy", "iz"}, Kind::IMAGE},
 };
 
-/** The component of stress for each of the nine of a tensor of VTK, whose lower half is the upper one. */
+/** The component of stress for each of the nine of a tensor of VTK, whose lower half is the upper
+ *  one. */
 constexpr int tensor_component[9] = {0, 3, 4, -1, 1, 5, -1, -1, 2};
 
 /** What is a function of other columns, or of all points. */
@@ -251,7 +252,8 @@ void MPMPointColumns::set_one(MPMPoints &points, const std::vector<FixMPMMateria
     for (int k = 0; k < 6; k++) points.tau[i][k] = J * sigma[k];
   }
   if (has_image) {
-    // the place of the file may have been outside of the box, as between two neighbor lists, and was wrapped
+    // the place of the file may have been outside of the box, as between two neighbor lists, and
+    // was wrapped
     const imageint wrapped = atom->image[i];
     image[0] += (int) (wrapped & IMGMASK) - IMGMAX;
     image[1] += (int) (wrapped >> IMGBITS & IMGMASK) - IMGMAX;

@@ -20,10 +20,11 @@ namespace LAMMPS_NS {
 class FixMPMMaterial;
 struct MPMPoints;
 
-/** Columns of numbers that set the state of new points: velocity, F, stress, mass, radius, image, history
- *  variables of materials, and vectors and arrays of fix property/atom. Components are named as in compute
- *  mpm/atom, such as stress/xy, or NAME:k, as VTK numbers them. Positions, volumes, types, and IDs are needed
- *  before a point exists: find() finds these columns, and set() does not use them. */
+/** Columns of numbers that set the state of new points: velocity, F, stress, mass, radius, image,
+ *  history variables of materials, and vectors and arrays of fix property/atom. Components are
+ *  named as in compute mpm/atom, such as stress/xy, or NAME:k, as VTK numbers them. Positions,
+ *  volumes, types, and IDs are needed before a point exists: find() finds these columns, and set()
+ *  does not use them. */
 class MPMPointColumns : protected Pointers {
  public:
   explicit MPMPointColumns(LAMMPS *lmp) : Pointers(lmp) {}
@@ -50,8 +51,9 @@ class MPMPointColumns : protected Pointers {
   /** Adds the next column of the rows, and returns its kind. */
   Kind add(const std::string &name);
 
-  /** Name of component c of a quantity with width numbers per point, as arrays of VTK have: NAME:c, or NAME
-   *  if there is only one number. The six components of the stress are xx yy zz xy xz yz. */
+  /** Name of component c of a quantity with width numbers per point, as arrays of VTK have: NAME:c,
+   *  or NAME if there is only one number. The six components of the stress are xx yy zz xy xz
+   *  yz. */
   static std::string component_name(const std::string &name, int c, int width);
 
   /** The column of a component, or -1 if there is none. */
@@ -66,18 +68,19 @@ class MPMPointColumns : protected Pointers {
   /** Is there any column of F, stress, or history, the state that deformation leaves behind? */
   bool has_state() const;
 
-  /** Sets the state of the points from first on to the values in rows. The group of these points and the data
-   *  that fixes keep of them must be set already. */
+  /** Sets the state of the points from first on to the values in rows. The group of these points
+   *  and the data that fixes keep of them must be set already. */
   void set(int first, const std::vector<double> &rows) const;
 
-  /** State that points have and that these columns do not set, for a warning; empty if nothing is missing.
-   *  Call after set(). */
+  /** State that points have and that these columns do not set, for a warning; empty if nothing is
+   *  missing. Call after set(). */
   std::string missing() const;
 
   /** An earlier column of the same quantity, or -1 if there is none. */
   int same(int column) const;
 
-  /** Number of columns, and their names in a form that add() understands, with NULL for those left out. */
+  /** Number of columns, and their names in a form that add() understands, with NULL for those left
+   *  out. */
   int size() const { return (int) columns.size(); }
   std::string names() const;
 

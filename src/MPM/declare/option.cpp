@@ -119,7 +119,8 @@ std::string name_of(const std::string &names, int k, int n)
   return n == 1 ? names : split(names, ' ')[k];
 }
 
-/** What to say of a number in the place of a keyword, after the values of an option: in 2d some have fewer than in 3d. */
+/** What to say of a number in the place of a keyword, after the values of an option: in 2d some
+ *  have fewer than in 3d. */
 std::string too_many(const Option *option, const std::string &found)
 {
   if (!option || found.find_first_of("0123456789") > 1) return "";

@@ -10,20 +10,20 @@
 #define MPM_DECLARE_OPTION_H
 
 // The options of a style, declared once: keyword, values, unit, range, default, meaning, and the
-// combinations that are refused, with the remedy. The parser with its error messages, the refusals, the
-// comparison with a restart file, the echo in the log, and the block of keywords in the manual are all
-// made from this declaration. Knows nothing of LAMMPS: mpm_options.h connects the two.
+// combinations that are refused, with the remedy. The parser with its error messages, the refusals,
+// the comparison with a restart file, the echo in the log, and the block of keywords in the manual
+// are all made from this declaration. Knows nothing of LAMMPS: mpm_options.h connects the two.
 //
 //   Options MPMDtOptions::declare()
 //   {
 //     using namespace option;
 //     Options o("fix mpm/dt");
 //     o.argument(number(fraction, "fraction", {0.0, 2.0, false, true}));
-//     o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many steps")});
-//     o.add("min", {number(dt_min, "dt", POSITIVE, "time", "smallest time step")}).standard("none");
-//     o.add("max", {number(dt_max, "dt", POSITIVE, "time", "largest time step")}).standard("none");
-//     o.refuse([=] { return OptionRules{{dt_max < dt_min, "min", "{min} is above max {max}"}}; });
-//     return o;
+//     o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many
+//     steps")}); o.add("min", {number(dt_min, "dt", POSITIVE, "time", "smallest time
+//     step")}).standard("none"); o.add("max", {number(dt_max, "dt", POSITIVE, "time", "largest time
+//     step")}).standard("none"); o.refuse([=] { return OptionRules{{dt_max < dt_min, "min", "{min}
+//     is above max {max}"}}; }); return o;
 //   }
 //
 // A declaration refers to the variables into which it reads values, and must not outlive them.
@@ -105,8 +105,8 @@ struct OptionWord {
   std::vector<OptionValue> values = {};    ///< values that follow this word
 };
 
-/** A rule that options must not break. The message consists of the command, the keyword, and the text, in
- *  which {name} stands for the present value of that keyword. */
+/** A rule that options must not break. The message consists of the command, the keyword, and the
+ *  text, in which {name} stands for the present value of that keyword. */
 struct OptionRule {
   bool broken;
   std::string keyword;    ///< the keyword that is wrong, or empty
@@ -114,8 +114,9 @@ struct OptionRule {
 };
 using OptionRules = std::vector<OptionRule>;
 
-/** The kinds of values. Names are those in the manual and in messages. Units are kinds of units, such as
- *  velocity; "1" for dimensionless values, "" for values whose unit need not be mentioned. */
+/** The kinds of values. Names are those in the manual and in messages. Units are kinds of units,
+ *  such as velocity; "1" for dimensionless values, "" for values whose unit need not be
+ *  mentioned. */
 namespace option {
 
   using OptionNumber = std::variant<double *, int *, int64_t *>;
@@ -176,7 +177,8 @@ namespace option {
 /** A keyword with its values. */
 class Option {
  public:
-  /** A value that differs from the one in the restart file is an error; of several words only the first is compared. */
+  /** A value that differs from the one in the restart file is an error; of several words only the
+   *  first is compared. */
   Option &keep() { return set(kept, true); }
   /** The same, but only if f() is true when the restart file is written. */
   Option &keep(const std::function<bool()> &f)
@@ -186,8 +188,8 @@ class Option {
   }
   /** The keyword must not be given twice. */
   Option &once() { return set(single, true); }
-  /** Sets a function that is called each time the values have been read, as a keyword may be given again for another
-   *  object. */
+  /** Sets a function that is called each time the values have been read, as a keyword may be given
+   *  again for another object. */
   Option &then(const std::function<void()> &f) { return set(after, f); }
   /** Text of the manual for the default, instead of the initial value. */
   Option &standard(const std::string &text) { return set(preset, text); }
@@ -215,20 +217,21 @@ class Options {
   /** command: name of the command in messages, for example fix mpm/dt. */
   explicit Options(std::string command) : command(std::move(command)) {}
 
-  /** Adds a required value. Required values come before all keywords, in the order of their declaration. */
+  /** Adds a required value. Required values come before all keywords, in the order of their
+   *  declaration. */
   void argument(const OptionValue &value) { arguments.push_back(value); }
   /** Adds a keyword. meaning: lines for the manual, in addition to those of the values. */
   Option &add(const std::string &keyword, std::vector<OptionValue>,
               const std::string &meaning = "");
 
-  /** Sets the rules that the input must not break, evaluated after all values have been read. A rule with a
-   *  keyword is ignored if this keyword is not in the input. */
+  /** Sets the rules that the input must not break, evaluated after all values have been read. A
+   *  rule with a keyword is ignored if this keyword is not in the input. */
   void refuse(const std::function<OptionRules()> &rules) { refusals = rules; }
   /** Sets the rules for warnings(). */
   void warn(const std::function<OptionRules()> &rules) { doubts = rules; }
 
-  /** Reads arguments from iarg up to the end or the word last, and applies the refusals. Returns the index
-   *  at which it stopped; throws OptionError. */
+  /** Reads arguments from iarg up to the end or the word last, and applies the refusals. Returns
+   *  the index at which it stopped; throws OptionError. */
   int read(const OptionInput &, int iarg, const std::string &last = "");
 
   /** Is this word a keyword? */
@@ -245,7 +248,8 @@ class Options {
   std::string text() const;
   /** The keywords that a restart file keeps with their present values, one per line. */
   std::string kept() const;
-  /** Differences from the text that kept() returned when the restart file was written; empty: none. */
+  /** Differences from the text that kept() returned when the restart file was written; empty:
+   *  none. */
   std::string differences(const std::string &kept_then) const;
 
   const std::vector<Option> &all() const { return options; }

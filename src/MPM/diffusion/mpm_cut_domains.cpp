@@ -30,7 +30,8 @@ int MPMCutDomains::dim() const
 
 /* ---------------------------------------------------------------------- */
 
-/** The functions in the middle of a part, in cells from the origin. False if this rank does not have all nodes. */
+/** The functions in the middle of a part, in cells from the origin. False if this rank does not
+ *  have all nodes. */
 bool MPMCutDomains::set_nodes(const double *middle, int slot, Part &part) const
 {
   const Grid &grid = field.grid;

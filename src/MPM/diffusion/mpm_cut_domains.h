@@ -17,9 +17,10 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** The parts in each cell of the domains of points (boxes of their volume around them) that are divided by sides of cells. For
- *  Bernstein polynomials, whose gradients jump at these sides. Sums of gradients over parts are integrals wherever the points
- *  are; with gradients at the points instead, sums depend on how many points are in a cell. */
+/** The parts in each cell of the domains of points (boxes of their volume around them) that are
+ *  divided by sides of cells. For Bernstein polynomials, whose gradients jump at these sides. Sums
+ *  of gradients over parts are integrals wherever the points are; with gradients at the points
+ *  instead, sums depend on how many points are in a cell. */
 class MPMCutDomains {
  public:
   static constexpr int NODES = 3;    ///< along an axis
@@ -40,7 +41,8 @@ class MPMCutDomains {
   bool any() const { return !parts.empty(); }
   /** [n] Is the domain of a point divided into parts? */
   std::vector<char> is_cut;
-  /** The domain of a point that is not cut, as one part; false if this rank does not have all of its nodes. */
+  /** The domain of a point that is not cut, as one part; false if this rank does not have all of
+   *  its nodes. */
   bool make_whole(int point, const MPMPointMap::Run &, Part &) const;
 
   /** Calls f(node, gradient[3] of its function in the middle of the part). */

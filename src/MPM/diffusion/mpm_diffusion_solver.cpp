@@ -7,16 +7,19 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   With t = g dt, the base b of a stage, and the linearized changes J of the rates, a correction d of the values y solves
+   With t = g dt, the base b of a stage, and the linearized changes J of the rates, a correction d
+   of the values y solves
 
      C (1 - t J) d = C (b + t f(y) - y),
 
-   symmetric where J is so in the norm of the capacities C. Both sides are in the units of what is conserved (heat), so that nodes
-   that points hardly reach, which have next to no capacity, count little. What is prescribed is in the rates, which do not
-   change it: residuals and corrections are in the range of a projection P, with C P symmetric.
+   symmetric where J is so in the norm of the capacities C. Both sides are in the units of what is
+   conserved (heat), so that nodes that points hardly reach, which have next to no capacity, count
+   little. What is prescribed is in the rates, which do not change it: residuals and corrections are
+   in the range of a projection P, with C P symmetric.
 
-   The residual must be below the tolerance times the change of the values in the step, both times C, and not below the
-   round-off of the rates, which may cancel: about 1e-16 C y (1 + t r) with the fastest rate r.
+   The residual must be below the tolerance times the change of the values in the step, both times
+   C, and not below the round-off of the rates, which may cancel: about 1e-16 C y (1 + t r) with the
+   fastest rate r.
 ------------------------------------------------------------------------- */
 
 #include "diffusion/mpm_diffusion_solver.h"
@@ -34,7 +37,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int MOST_NEWTON = 40, MOST_LINEAR = 2000;
-// times the greatest rate of the equations: below, the diagonal takes as few products as levels and their set-up do
+// times the greatest rate of the equations: below, the diagonal takes as few products as levels and
+// their set-up do
 static constexpr double LONG = 100.0;
 static constexpr int DO_WELL = 40;    // iterations with the preconditioner of other values
 static constexpr double ROUND_OFF = 4.0e-16;
@@ -148,7 +152,8 @@ void MPMDiffusionSolver::products(int n, const double *const *a, const double *c
 
 /* ---------------------------------------------------------------------- */
 
-/** Diagonals, and in long steps levels, of the equations as they are linearized now. They serve all stages of a step. */
+/** Diagonals, and in long steps levels, of the equations as they are linearized now. They serve all
+ *  stages of a step. */
 void MPMDiffusionSolver::prepare(double greatest)
 {
   by_levels = implicit_dt * greatest > LONG;

@@ -25,26 +25,29 @@ namespace LAMMPS_NS {
 class MPMField;
 class MPMNodeScalar;
 
-/** Equations of diffusion C dy/dt = F(y) of scalars at nodes, such as temperatures: the interface that the solver needs.
- *  Values, rates, and capacities are those of MPMNodeScalar, with the same values on all ranks that have a node. */
+/** Equations of diffusion C dy/dt = F(y) of scalars at nodes, such as temperatures: the interface
+ *  that the solver needs. Values, rates, and capacities are those of MPMNodeScalar, with the same
+ *  values on all ranks that have a node. */
 class MPMDiffusion {
  public:
-  /** A contribution G K G^T to the matrix -dF/dy: n nodes of this rank's grid, gradient: G [n][ngrad], which turns the values
-   *  at the nodes into ngrad gradients, and stiffness: K [ngrad][ngrad], which turns gradients into their conjugate fluxes. */
+  /** A contribution G K G^T to the matrix -dF/dy: n nodes of this rank's grid, gradient: G
+   *  [n][ngrad], which turns the values at the nodes into ngrad gradients, and stiffness: K
+   *  [ngrad][ngrad], which turns gradients into their conjugate fluxes. */
   using Term = std::function<void(int n, const int64_t *nodes, int ngrad, const double *gradient,
                                   const double *stiffness)>;
 
   /** Find the rates of all values, and of all lists that are integrated with them. Collective. */
   virtual void find_rates() = 0;
-  /** Linearize around the present values, for find_changes(). Returns whether the linear equations are symmetric in the norm
-   *  of capacities, the same on all ranks. Collective. */
+  /** Linearize around the present values, for find_changes(). Returns whether the linear equations
+   *  are symmetric in the norm of capacities, the same on all ranks. Collective. */
   virtual bool linearize() = 0;
   /** Values are small changes: find the changes of the rates. Collective. */
   virtual void find_changes() = 0;
-  /** Remove prescribed components from the changes of the values of a part: a projection that is orthogonal in the norm of
-   *  capacities. */
+  /** Remove prescribed components from the changes of the values of a part: a projection that is
+   *  orthogonal in the norm of capacities. */
   virtual void project(int part, std::vector<double> &change) = 0;
-  /** Terms of a part from this rank, for a preconditioner; prescribed values are stiff. dt: of the implicit equations. */
+  /** Terms of a part from this rank, for a preconditioner; prescribed values are stiff. dt: of the
+   *  implicit equations. */
   virtual void each_term(int part, double dt, const Term &) = 0;
 
  protected:
@@ -61,13 +64,15 @@ struct MPMDiffusionOptions {
 /** Implicit steps of equations of diffusion.
  *
  *    euler:  y1 = y0 + dt f(y1), backward Euler, of first order
- *    sdirk2: y1 = y0 + g dt f(y1), y2 = y0 + (1-g) dt f(y1) + g dt f(y2), g = 1 - 1/sqrt(2) (R. Alexander, SIAM J. Numer.
- *            Anal. 14 (1977) 1006), of second order; fast modes decay in a step as with Euler's method
+ *    sdirk2: y1 = y0 + g dt f(y1), y2 = y0 + (1-g) dt f(y1) + g dt f(y2), g = 1 - 1/sqrt(2) (R.
+ *    Alexander, SIAM J. Numer. Anal. 14 (1977) 1006), of second order; fast modes decay in a step
+ *    as with Euler's method
  *
- *  y1 and y2 are found by Newton's method with conjugate gradients, or with GMRES if the equations are not symmetric. The
- *  preconditioner is multigrid or, in steps in which diffusion reaches only a few nodes, the diagonal. The values at the
- *  end are then computed from the sums above with the rates at y1 and y2, and so are the lists of integrals. So all that
- *  the rates conserve is conserved to round-off, however accurate the solution is. Nothing is kept from step to step. */
+ *  y1 and y2 are found by Newton's method with conjugate gradients, or with GMRES if the equations
+ *  are not symmetric. The preconditioner is multigrid or, in steps in which diffusion reaches only
+ *  a few nodes, the diagonal. The values at the end are then computed from the sums above with the
+ *  rates at y1 and y2, and so are the lists of integrals. So all that the rates conserve is
+ *  conserved to round-off, however accurate the solution is. Nothing is kept from step to step. */
 class MPMDiffusionSolver : private MPM_NS::LinearSystem {
   using LinearSystem = MPM_NS::LinearSystem;
 
@@ -90,7 +95,8 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
     int newton = 0, linear = 0;    ///< iterations in the step
     std::string failure;
   };
-  /** A step. greatest, fastest: bounds of the rates of diffusion, and of all rates [1/time]. Collective. */
+  /** A step. greatest, fastest: bounds of the rates of diffusion, and of all rates [1/time].
+   *  Collective. */
   const Report &advance(double dt, double greatest, double fastest);
   double memory_usage() const;
 

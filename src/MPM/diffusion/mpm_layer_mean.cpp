@@ -7,28 +7,31 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   What flows through an interface of two conductivities has a gradient that jumps there, and smooth functions of nodes cannot
-   have that: the best that they find, of all gradients, lets too much through, by an error of first order
-   (Galerkin's method bounds the conductance from above). The flow does not jump, hence the resistance 1/k, which adds up across
-   layers, may be smoothed without changing what flows, and so may be the conductivity along them: in place of k points
-   have
+   What flows through an interface of two conductivities has a gradient that jumps there, and smooth
+   functions of nodes cannot have that: the best that they find, of all gradients, lets too much
+   through, by an error of first order (Galerkin's method bounds the conductance from above). The
+   flow does not jump, hence the resistance 1/k, which adds up across layers, may be smoothed
+   without changing what flows, and so may be the conductivity along them: in place of k points have
 
      k = k_t (I - n n^T) + k_n n n^T,  1/k_n = sum_i N_ip sum_q V_q N_iq/k_q / sum_q V_q N_iq,
      k_t = sum_i N_ip sum_q V_q N_iq k_q / sum_q V_q N_iq,   n along the gradient of 1/k_n.
 
-   The sums of the resistances and of the conductivities of all points stay what they are, so that layers in series
-   and in parallel let through what they should, and as this varies within a cell and not from point to point, functions can follow.
-   Effective conductivities of a periodic cell of n nodes with halves of conductivity 1 and 10, errors with k of the points and this:
-   in series 7.6, 3.6, 1.8 % and 0.14, 0.06, 0.03 % with n = 8, 16, 32; layers at 45 degrees 2.4, 1.2, 0.6 % and 0.03, 0.02,
-   0.01 %; a checkerboard 18, 11, 7 % and 2.7, 1.4, 0.8 %. (Means across and along interfaces are those of
-   electromagnetics on lattices: A. Farjadpour et al., Opt. Lett. 31 (2006) 2972.)
+   The sums of the resistances and of the conductivities of all points stay what they are, so that
+   layers in series and in parallel let through what they should, and as this varies within a cell
+   and not from point to point, functions can follow. Effective conductivities of a periodic cell of
+   n nodes with halves of conductivity 1 and 10, errors with k of the points and this: in series
+   7.6, 3.6, 1.8 % and 0.14, 0.06, 0.03 % with n = 8, 16, 32; layers at 45 degrees 2.4, 1.2, 0.6 %
+   and 0.03, 0.02, 0.01 %; a checkerboard 18, 11, 7 % and 2.7, 1.4, 0.8 %. (Means across and along
+   interfaces are those of electromagnetics on lattices: A. Farjadpour et al., Opt. Lett. 31 (2006)
+   2972.)
 
-   The mean along interfaces gives a point of little capacity next to one that conducts well a diffusivity that neither of the materials
-   has, and with it short time steps. So it is taken only where the greatest conductivity over the smallest capacity is not above MOST
-   times the greatest diffusivity; otherwise points keep their own along interfaces, which is right for flat ones, too.
+   The mean along interfaces gives a point of little capacity next to one that conducts well a
+   diffusivity that neither of the materials has, and with it short time steps. So it is taken only
+   where the greatest conductivity over the smallest capacity is not above MOST times the greatest
+   diffusivity; otherwise points keep their own along interfaces, which is right for flat ones, too.
 
-   Where all points conduct the same, it is what they have. In the middle of a layer that is thinner than a cell there may be no
-   direction; then there is no mean across.
+   Where all points conduct the same, it is what they have. In the middle of a layer that is thinner
+   than a cell there may be no direction; then there is no mean across.
 ------------------------------------------------------------------------- */
 
 #include "diffusion/mpm_layer_mean.h"
@@ -42,7 +45,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// differences of means, and slopes of them per node spacing, below which a point sees one conductivity only
+// differences of means, and slopes of them per node spacing, below which a point sees one
+// conductivity only
 static constexpr double SAME = 1.0e-9;
 
 void MPMLayerMean::find(const Fill &fill)

@@ -14,22 +14,25 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Integrals of the function of a node over a body with a flat surface, and over this surface, by the distance
- *  of the node from the surface. Exact for surfaces normal to axes; other surfaces differ little, because the
- *  variance of the function is the same in all directions. Distances are in node spacings. Bernstein
- *  polynomials have two kinds of nodes; their profile is that of quadratic B-splines on the same nodes. */
+/** Integrals of the function of a node over a body with a flat surface, and over this surface, by
+ *  the distance of the node from the surface. Exact for surfaces normal to axes; other surfaces
+ *  differ little, because the variance of the function is the same in all directions. Distances are
+ *  in node spacings. Bernstein polynomials have two kinds of nodes; their profile is that of
+ *  quadratic B-splines on the same nodes. */
 class MPMNodeProfile {
  public:
   explicit MPMNodeProfile(const MPMField &);
 
-  /** Volume of a node, as a share of the volume of a cell, at this depth in the body; the depth is negative
-   *  outside. */
+  /** Volume of a node, as a share of the volume of a cell, at this depth in the body; the depth is
+   *  negative outside. */
   double volume(double depth) const;
-  /** Depth from the ratio of volume to area (of the body and of its surface at the node, in cells). */
+  /** Depth from the ratio of volume to area (of the body and of its surface at the node, in
+   *  cells). */
   double depth(double volume_by_area) const;
   /** Depth from the volume. */
   double depth_of_volume(double volume) const;
-  /** Mean depth below the surface of the part of the body within the function of a node at this depth. */
+  /** Mean depth below the surface of the part of the body within the function of a node at this
+   *  depth. */
   double mean_depth(double depth) const;
   /** Distance from the surface at which nodes no longer reach it. */
   double reach() const { return range; }

@@ -32,8 +32,8 @@ void MPMNodeScalar::init(bool with_slopes, bool with_volumes)
   for (auto &tile : tiles) tile.assign(nodes + MORE, 0.0);
 }
 
-/** Calls f(run, first, n, prepare) for batches of the points of a block that have a part; prepare() makes their
- *  stencil. f returns false for a run that has none. */
+/** Calls f(run, first, n, prepare) for batches of the points of a block that have a part; prepare()
+ *  makes their stencil. f returns false for a run that has none. */
 template <class F>
 void MPMNodeScalar::visit(const MPMPointMap::ActiveBlock &block, SlopeKind kind, int *box,
                           const F &f)

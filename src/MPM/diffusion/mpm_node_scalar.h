@@ -10,7 +10,7 @@
 #define LMP_MPM_NODE_SCALAR_H
 
 #include "field/mpm_point_map.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "transfer/scalar.h"
 
 #include <array>
@@ -20,16 +20,16 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Scalar that spreads between the points of a field through the nodes: temperature, or the pressure of pore
- *  water. With the capacities C_p of points (the amount per unit of the scalar),
+/** Scalar that spreads between the points of a field through the nodes: temperature, or the
+ *  pressure of pore water. With the capacities C_p of points (the amount per unit of the scalar),
  *
  *      C_i = sum_p C_p N_ip,  u_i = sum_p C_p N_ip [u_p + g_p . (x_i - x_p)]/C_i,
  *      C_i du_i/dt = sum_p q_p . grad N_ip + sum_p s_p N_ip,
  *
- *  where q_p = V_p (flow per area) is the flux times the volume, and s_p is the rate of sources in points. Both
- *  may depend on the scalar and its gradient at the point. As the weights N_ip of a point have the sum one, and
- *  the sum of N_ip (x_i - x_p) is zero, sum_i C_i u_i is the amount that the points have, and fluxes do not
- *  change it.
+ *  where q_p = V_p (flow per area) is the flux times the volume, and s_p is the rate of sources in
+ *  points. Both may depend on the scalar and its gradient at the point. As the weights N_ip of a
+ *  point have the sum one, and the sum of N_ip (x_i - x_p) is zero, sum_i C_i u_i is the amount
+ *  that the points have, and fluxes do not change it.
  *
  *  Functions of the user are called with batches of points of a run. */
 class MPMNodeScalar {
@@ -51,23 +51,25 @@ class MPMNodeScalar {
   using Fill = std::function<bool(const MPMPointMap::Run &, int first, int n, Points &)>;
   /** In: gradient and value at points; out: q_p and s_p. */
   using Conduct = std::function<void(const MPMPointMap::Run &, int first, int n, Rows)>;
-  /** In: gradient and value at points; out: factors k_p of the gradient, q_p = k_p grad u, without sources. */
+  /** In: gradient and value at points; out: factors k_p of the gradient, q_p = k_p grad u, without
+   *  sources. */
   using Factors =
       std::function<void(const MPMPointMap::Run &, int first, int n, const Rows, double *factors)>;
-  /** Receives new gradients g_p and values. before: values at points from the nodes before, or null. */
+  /** Receives new gradients g_p and values. before: values at points from the nodes before, or
+   *  null. */
   using Take =
       std::function<void(const MPMPointMap::Run &, int first, int n, Rows, const double *before)>;
   /** Receives values alone, [n]. */
   using TakeValues =
       std::function<void(const MPMPointMap::Run &, int first, int n, const double *values)>;
 
-  /** [node]. Nodes of this rank's points have the sums over ranks, which are the same on all ranks that share a
-   *  node. Copies at periodic faces are not up to date. */
+  /** [node]. Nodes of this rank's points have the sums over ranks, which are the same on all ranks
+   *  that share a node. Copies at periodic faces are not up to date. */
   std::vector<double> capacity, volume, value, before, rate;
 
-  /** True if nodes of this field and of others exchange sums before ranks are summed (MPMHeatLevels):
-   *  points_to_nodes() and find_rates() then leave the sums over this rank's points, until sum_nodes(), keep(),
-   *  and sum_rates() are called. */
+  /** True if nodes of this field and of others exchange sums before ranks are summed
+   *  (MPMHeatLevels): points_to_nodes() and find_rates() then leave the sums over this rank's
+   *  points, until sum_nodes(), keep(), and sum_rates() are called. */
   bool is_level = false;
 
   explicit MPMNodeScalar(MPMField &field) : field(field) {}
@@ -76,28 +78,30 @@ class MPMNodeScalar {
   void init(bool slopes, bool volumes);
   /** Finds capacities, volumes, and values of nodes. keeps: also sets before = value. */
   void points_to_nodes(const Fill &, bool keeps);
-  /** Sums values, capacities, and volumes over ranks, and divides values by capacities; called by the user with
-   *  is_level. */
+  /** Sums values, capacities, and volumes over ranks, and divides values by capacities; called by
+   *  the user with is_level. */
   void sum_nodes();
   void keep() { before = value; }
-  /** Gives capacities C_p, or other values, of the points of a run that takes part in points_to_nodes(). */
+  /** Gives capacities C_p, or other values, of the points of a run that takes part in
+   *  points_to_nodes(). */
   using GiveValues =
       std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
-  /** Extends u by terms of a series, as XPIC and FMPM do for velocities, see mpm_stage_series.cpp. u: in:
-   *  values of nodes from points without slopes; out: this number of terms of the series for nodal values that
-   *  would give the points their own values, u <- u + (value - S+ S u), where S maps nodes to points, and S+
-   *  maps back by capacities. sum_i C_i u_i does not change. */
+  /** Extends u by terms of a series, as XPIC and FMPM do for velocities, see mpm_stage_series.cpp.
+   *  u: in: values of nodes from points without slopes; out: this number of terms of the series for
+   *  nodal values that would give the points their own values, u <- u + (value - S+ S u), where S
+   *  maps nodes to points, and S+ maps back by capacities. sum_i C_i u_i does not change. */
   void add_terms(int terms, const GiveValues &capacities, std::vector<double> &u);
-  /** Finds the rates of the values of nodes. more: adds the contributions that this rank knows to rates times
-   *  capacity, before ranks are summed. */
+  /** Finds the rates of the values of nodes. more: adds the contributions that this rank knows to
+   *  rates times capacity, before ranks are summed. */
   void find_rates(const Conduct &, const std::function<void()> &more = nullptr);
   /** The same for fluxes along gradients only, with less work. */
   void find_rates_along(const Factors &);
   /** Sums the rates over ranks and divides them by capacities; called by the user with is_level. */
   void sum_rates();
-  /** Bound of the eigenvalues of the negative rates on this rank, from the rows of their matrix [1/time]; not
-   *  with domains. bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of a linear flux. add_rows()
-   *  and greatest_row() are called one after the other; for a level, sums are exchanged in between. */
+  /** Bound of the eigenvalues of the negative rates on this rank, from the rows of their matrix
+   *  [1/time]; not with domains. bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of
+   *  a linear flux. add_rows() and greatest_row() are called one after the other; for a level, sums
+   *  are exchanged in between. */
   void add_rows(const Conduct &bound);    // stores the rows in rate
   double greatest_row();
   double greatest_rate(const Conduct &bound)
@@ -108,7 +112,8 @@ class MPMNodeScalar {
   /** Transfers values from nodes to points. changes: pass the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
   void values_to_points(const TakeValues &);
-  /** In: nodal values interpolated to points; out: contributions of points to the sums of add_up(). */
+  /** In: nodal values interpolated to points; out: contributions of points to the sums of
+   *  add_up(). */
   using Exchange = std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
   /** values_to_points() and add_up() in one pass. */
   void values_to_points_and_back(const Exchange &, std::vector<double> &nodes);
@@ -128,12 +133,12 @@ class MPMNodeScalar {
   std::vector<double> first_term;    // first term in add_terms()
   std::vector<char> has_part;        // [runs]
   MPM_NS::ScalarStencil stencil;
-  /** Ranges of base nodes in the tile of each active block. Stored here because other sums over points, of
-   *  walls and contact, may come between the calls of a step. */
+  /** Ranges of base nodes in the tile of each active block. Stored here because other sums over
+   *  points, of walls and contact, may come between the calls of a step. */
   std::vector<std::array<int, 6>> boxes;
 
-  /** Finds rates by give(run, first, n, q), which adds to a tile the contributions of points with these
-   *  gradients and values. */
+  /** Finds rates by give(run, first, n, q), which adds to a tile the contributions of points with
+   *  these gradients and values. */
   template <class F> void find_rates_by(const F &give, const std::function<void()> &more);
   template <class F>
   void visit(const MPMPointMap::ActiveBlock &, MPM_NS::SlopeKind, int *box, const F &);
@@ -141,8 +146,8 @@ class MPMNodeScalar {
   int *box_of(const MPMPointMap::ActiveBlock &);
 };
 
-/** Raises most to the greatest of itself and a[p]/b[p] of n points, b > 0. Does not divide where most is not
- *  exceeded. */
+/** Raises most to the greatest of itself and a[p]/b[p] of n points, b > 0. Does not divide where
+ *  most is not exceeded. */
 inline void raise_ratio(double &most, int n, const double *a, const double *b)
 {
   int above = 0;

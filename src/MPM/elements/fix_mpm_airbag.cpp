@@ -23,7 +23,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// of the gas, as much as sound could carry through vents, in one part of a time step; and most parts
+// of the gas, as much as sound could carry through vents, in one part of a time step; and most
+// parts
 static constexpr double PART = 0.003, MOST_PARTS = 1.0e5;
 
 /* ----------------------------------------------------------------------
@@ -213,8 +214,8 @@ void FixMPMAirbag::flow(double dt)
     if (has_inflow) g.add(rate[0] * time, rate[1]);
     return g;
   };
-  // the flow goes like the root of the difference of pressures: a step in which it could pass a large part of the gas would go far past the
-  // pressure outside, and back in the next one
+  // the flow goes like the root of the difference of pressures: a step in which it could pass a
+  // large part of the gas would go far past the pressure outside, and back in the next one
   const double passes = coefficient * vent * dt / gas.volume *
       std::sqrt(gas.gamma * gas.R * std::max({gas.temperature, temperature, rate[1]}) * to_square);
   const int parts = open ? (int) std::clamp(std::ceil(passes / PART), 1.0, MOST_PARTS) : 1;

@@ -38,7 +38,8 @@ struct MPMAirbagOptions {
   MPM_NS::Options declare();
 };
 
-/** Pressure on one side of a surface of fix mpm/elements: a given one, or that of a gas if the surface is a closed bag. */
+/** Pressure on one side of a surface of fix mpm/elements: a given one, or that of a gas if the
+ *  surface is a closed bag. */
 class FixMPMAirbag : public Fix, private MPMAirbagOptions, private MPMElementsPressure {
  public:
   FixMPMAirbag(class LAMMPS *, int, char **);

@@ -13,7 +13,8 @@
 
 namespace LAMMPS_NS {
 
-/** Keywords for bodies that are surfaces or lines of a mesh. They define the volume of these bodies. */
+/** Keywords for bodies that are surfaces or lines of a mesh. They define the volume of these
+ *  bodies. */
 struct MPMThinBody {
   double thickness = 0.0;    ///< of surfaces, in 2d of lines; 0: not given
   double section = 0.0;      ///< area across lines in 3d; 0: not given

@@ -250,13 +250,13 @@ bool PairMPMSheet::tell_first(const Passages::Sight *found, const char *what) co
   int rank = found ? comm->me : comm->nprocs, first;
   MPI_Allreduce(&rank, &first, 1, MPI_INT, MPI_MIN, world);
   if (first == comm->nprocs) return false;
-  Passages::Sight told = {};
-  if (comm->me == first) told = *found;
-  MPI_Bcast(&told, sizeof(told), MPI_BYTE, first, world);
+  Passages::Sight passage = {};
+  if (comm->me == first) passage = *found;
+  MPI_Bcast(&passage, sizeof(passage), MPI_BYTE, first, world);
   if (comm->me == 0)    // which has the log file
-    error->warning(FLERR, "Pair style mpm/sheet: node {} {}", told.node,
-                   fmt::format(fmt::runtime(what), told.face / 2, bodies[told.body].elements->id,
-                               update->ntimestep));
+    error->warning(FLERR, "Pair style mpm/sheet: node {} {}", passage.node,
+                   fmt::format(fmt::runtime(what), passage.face / 2,
+                               bodies[passage.body].elements->id, update->ntimestep));
   return true;
 }
 

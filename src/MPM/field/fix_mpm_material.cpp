@@ -9,7 +9,7 @@
 #include "field/fix_mpm_material.h"
 
 #include "base/mpm_input.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 
 #include "atom.h"

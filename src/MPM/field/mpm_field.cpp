@@ -29,7 +29,7 @@
 #include "field/mpm_transfer_heat.h"
 #include "field/mpm_watch.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "modify.h"
 #include "update.h"
 

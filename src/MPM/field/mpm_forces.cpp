@@ -10,7 +10,7 @@
 
 #include "field/mpm_field.h"
 #include "field/mpm_plan.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 #include <algorithm>
 #include <cstdint>

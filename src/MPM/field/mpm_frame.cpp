@@ -9,7 +9,7 @@
 #include "field/mpm_frame.h"
 
 #include "base/mpm_points.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 #include <cmath>
 #include <cstring>

@@ -28,7 +28,7 @@
 #include "error.h"
 #include "field/mpm_affine.h"
 #include "fix.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "math/matrix.h"
 #include "math_extra.h"
 #include "update.h"

@@ -10,7 +10,7 @@
 
 #include "base/mpm_points.h"
 #include "field/mpm_field.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;

@@ -91,7 +91,7 @@ class MPMNodeAction {
   virtual bool may_be_empty(const class MPMField &) const { return false; }
 
   /** Changes the velocities of the nodes of the fields; in STEP, also the old velocities of FLIP
-   *  where material is held for good (see fix_mpm_boundary.cpp). */
+   *  where material is held for good (see mpm_mirror_nodes.cpp). */
   virtual void act(double dt, Stage) = 0;
 
   /** Called on all actions after another action has changed the velocities of this stage. */

@@ -16,7 +16,7 @@
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_point_map.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 
 #include <algorithm>
 

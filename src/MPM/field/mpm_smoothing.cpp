@@ -41,7 +41,7 @@
 #include "field/mpm_stencil.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "update.h"
 

@@ -20,7 +20,7 @@
 #include "field/mpm_point_batches.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "update.h"
 
 #include <algorithm>

@@ -23,7 +23,7 @@
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "modify.h"
 #include "update.h"
 

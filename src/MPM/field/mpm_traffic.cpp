@@ -17,7 +17,7 @@
 #include "field/mpm_point_batches.h"
 #include "field/mpm_point_map.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "modify.h"

@@ -122,8 +122,8 @@ void FixMPMIncompressible::setup(int)
 }
 
 /* ----------------------------------------------------------------------
-   Called after exchange and borders. The order of points must not depend on an earlier order, so that a run
-   that continues from a restart file sums in the same order.
+   Called after exchange and borders. The order of points must not depend on an earlier order, so
+   that a run that continues from a restart file sums in the same order.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::pre_neighbor()
@@ -137,8 +137,8 @@ void FixMPMIncompressible::setup_pre_force(int vflag)
   pre_force(vflag);
 }
 
-/** LAMMPS has set to zero only the forces of atoms in the neighbor lists (neigh_modify include), see
- *  FixMPM::pre_force(). */
+/** LAMMPS has set to zero only the forces of atoms in the neighbor lists (neigh_modify include),
+ *  see FixMPM::pre_force(). */
 void FixMPMIncompressible::pre_force(int)
 {
   if (!neighbor->includegroup) return;
@@ -146,7 +146,8 @@ void FixMPMIncompressible::pre_force(int)
     if (flow->parts.cells.is_point(i)) MathExtra::zero3(atom->f[i]);
 }
 
-/** With lists of grains alone, LAMMPS does not see how far points go, which must be less than a period. */
+/** With lists of grains alone, LAMMPS does not see how far points go, which must be less than a
+ *  period. */
 void FixMPMIncompressible::initial_integrate(int)
 {
   flow->step();
@@ -192,11 +193,11 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
 }
 
 /* ----------------------------------------------------------------------
-   scalar: number of iterations; vector: this number, what is left of the divergence (relative), largest |div
-   v|, volume that points fill, number of wet cells, kinetic energy, largest speed, force on the six walls,
-   iterations of the implicit viscosity, force on the regions, and energy that spreading has added; with gas:
-   number of pockets that have some, highest and lowest pressure, volume, and energy; parts of the last step,
-   and halvings so far
+   scalar: number of iterations; vector: this number, what is left of the divergence (relative),
+   largest |div v|, volume that points fill, number of wet cells, kinetic energy, largest speed,
+   force on the six walls, iterations of the implicit viscosity, force on the regions, and energy
+   that spreading has added; with gas: number of pockets that have some, highest and lowest
+   pressure, volume, and energy; parts of the last step, and halvings so far
 ------------------------------------------------------------------------- */
 
 double FixMPMIncompressible::compute_scalar()

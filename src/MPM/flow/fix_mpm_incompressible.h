@@ -26,7 +26,8 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 namespace LAMMPS_NS {
 class MPMFlow;
 
-/** Flow of an incompressible fluid with free surfaces (MPMFlow): options, calls by LAMMPS, and output. */
+/** Flow of an incompressible fluid with free surfaces (MPMFlow): options, calls by LAMMPS, and
+ *  output. */
 class FixMPMIncompressible :
     public FixMPMState,
     public MPMStepLimit,
@@ -50,9 +51,10 @@ class FixMPMIncompressible :
   void write_restart(FILE *) override;
   void restart(char *) override;
 
-  /** Stable time step of this rank: the time in which a point passes one node spacing with its present velocity and
-   *  acceleration, or a moving region or wall passes one, or the limit of explicit viscosity, of solids, or of surface
-   *  tension. tag: of the limiting point; 0: another limit. */
+  /** Stable time step of this rank: the time in which a point passes one node spacing with its
+   *  present velocity and acceleration, or a moving region or wall passes one, or the limit of
+   *  explicit viscosity, of solids, or of surface tension. tag: of the limiting point; 0: another
+   *  limit. */
   double stable_dt(tagint &tag) const override;
   double spacing_around(const std::string &region) const override;
   double spacing() const override;

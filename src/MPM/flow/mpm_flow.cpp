@@ -33,16 +33,17 @@ static constexpr double SMOOTHED = 0.125;
 static constexpr double DIFFERENT_DT = 0.01;
 // tolerance of the spreading of points, which shows only with other numbers of processes
 static constexpr double SPREAD_TOLERANCE = 1.0e-8;
-// accelerations over that by gravity that limit the first step of a fluid at rest: the pressure causes
-// them at the edges of a block of water that is released
+// accelerations over that by gravity that limit the first step of a fluid at rest: the pressure
+// causes them at the edges of a block of water that is released
 static constexpr double FIRST_FALL = 4.0;
 // share of FLIP by default in a flow with solids or bodies: apic alone smooths velocities at their
-// surfaces in each step, which brakes sinking and swaying bodies in proportion to the number of steps
+// surfaces in each step, which brakes sinking and swaying bodies in proportion to the number of
+// steps
 static constexpr double FLIP_OF_BODIES = 0.98;
-// transfer auto: share that is kept of the part of velocities that the lattice does not see, if this
-// part is below SMOOTH times h^2 d2v_c/dx_c^2 (root mean squares); nothing is kept above NOISY.
-// Vortices, waves, and oscillating drops with 16 cells or more in a wave have 0.03 to 0.06; remains of
-// flow in a fluid at rest, and fluid that falls or splashes, have 0.2 to 3
+// transfer auto: share that is kept of the part of velocities that the lattice does not see, if
+// this part is below SMOOTH times h^2 d2v_c/dx_c^2 (root mean squares); nothing is kept above
+// NOISY. Vortices, waves, and oscillating drops with 16 cells or more in a wave have 0.03 to 0.06;
+// remains of flow in a fluid at rest, and fluid that falls or splashes, have 0.2 to 3
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
 // passes that fit the gradients of velocities with which points
 // begin: a pass leaves up to 0.58 of what is missing
@@ -60,7 +61,8 @@ MPMFlow::MPMFlow(LAMMPS *lmp, const MPMIncompressibleOptions &chosen, int groupb
   choose_transfer();
 }
 
-/** With solids or bodies, points keep a part of their velocities by default. Bodies can come and go between runs. */
+/** With solids or bodies, points keep a part of their velocities by default. Bodies can come and go
+ *  between runs. */
 void MPMFlow::choose_transfer()
 {
   if (options.transfer_is_given) return;
@@ -110,8 +112,8 @@ void MPMFlow::start()
 }
 
 /* ----------------------------------------------------------------------
-   Names of what stages read and write: points, cells (of the lattice in reach of points), fields of the lattice, and parts of
-   the flow.
+   Names of what stages read and write: points, cells (of the lattice in reach of points), fields of
+   the lattice, and parts of the flow.
 ------------------------------------------------------------------------- */
 
 void MPMFlow::make_plan()
@@ -190,11 +192,11 @@ void MPMFlow::make_plan()
 }
 
 /* ----------------------------------------------------------------------
-   Forces act for the duration of this step, in two parts: 1/(1 + R) before points move, and R/(1 + R) in what
-   comes once more. The pressure has to remove the divergence that the motion in the step before has made,
-   within 1/(1 + R) of the duration of that step. Where the two durations differ, there is one solve for the
-   velocities, and one with the forces of the former duration. The latter gives the pressure and, in
-   proportion to the durations, what comes once more.
+   Forces act for the duration of this step, in two parts: 1/(1 + R) before points move, and R/(1 +
+   R) in what comes once more. The pressure has to remove the divergence that the motion in the step
+   before has made, within 1/(1 + R) of the duration of that step. Where the two durations differ,
+   there is one solve for the velocities, and one with the forces of the former duration. The latter
+   gives the pressure and, in proportion to the durations, what comes once more.
 ------------------------------------------------------------------------- */
 
 void MPMFlow::begin_step()
@@ -281,8 +283,8 @@ void MPMFlow::faces_to_points()
   spreading_energy += force->mvv2e * shift_energy[0] - shift_energy[1];
 }
 
-/** Sums over all ranks: number of ranks whose cells are not those of their points, MPMFlowUpdate::squares of
- *  the last step, and the energy of spreading. */
+/** Sums over all ranks: number of ranks whose cells are not those of their points,
+ *  MPMFlowUpdate::squares of the last step, and the energy of spreading. */
 void MPMFlow::sum_last_step(bool valid, double *all) const
 {
   const double mine[4] = {valid ? 0.0 : 1.0, unseen[0], unseen[1], spreading_energy};
@@ -341,8 +343,8 @@ void MPMFlow::find_filled_volume()
 }
 
 /* ----------------------------------------------------------------------
-   Points that begin with a velocity get its gradient, too, because the lattice would otherwise get a mean
-   over a cell. Points that continue keep what they had.
+   Points that begin with a velocity get its gradient, too, because the lattice would otherwise get
+   a mean over a cell. Points that continue keep what they had.
 ------------------------------------------------------------------------- */
 
 void MPMFlow::fit_gradients()
@@ -366,10 +368,10 @@ void MPMFlow::fit_gradients()
 }
 
 /* ----------------------------------------------------------------------
-   Interpolation with quadratic splines adds h^2/8 of its second derivative along its own axis to a component.
-   Here as much of the second differences along all axes is taken from all components, which keeps a field
-   without divergence free of divergence. Where a neighbor has no velocity, far out in the air, there is no
-   such difference.
+   Interpolation with quadratic splines adds h^2/8 of its second derivative along its own axis to a
+   component. Here as much of the second differences along all axes is taken from all components,
+   which keeps a field without divergence free of divergence. Where a neighbor has no velocity, far
+   out in the air, there is no such difference.
 ------------------------------------------------------------------------- */
 
 void MPMFlow::find_paths()
@@ -421,8 +423,8 @@ void MPMFlow::check_speed()
     most[0] = std::max(most[0], std::fabs(v));
   };
 
-  // the velocity of a moving wall is between those of faces next to it and of images beyond, which are
-  // twice as fast, but move nothing
+  // the velocity of a moving wall is between those of faces next to it and of images beyond, which
+  // are twice as fast, but move nothing
 
   for (const auto &cell : parts.cells.cells)
     for (int c = 0; c < dim; c++) look_at(fields.velocity[(int64_t) cell.number * dim + c]);
@@ -434,7 +436,8 @@ void MPMFlow::check_speed()
 
   fastest = all[0];
   if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * options.h) return;
-  // what hits a wall flat is several times faster after the step: no limit by earlier speeds can foresee that
+  // what hits a wall flat is several times faster after the step: no limit by earlier speeds can
+  // foresee that
 
   const bool is_set = !modify->get_fix_by_style("^mpm/dt$").empty();
   error->all(FLERR, Error::NOLASTLINE,
@@ -483,9 +486,10 @@ double MPMFlow::stable_dt(tagint &tag) const
   return dt;
 }
 
-/** Limit by the velocity and acceleration of points, at most dt; 0: a velocity is not finite.
- *  At the start of a run there are no forces yet. Those at the end of the last run count by the limit that
- *  they gave, also if that run has written the restart file; at the start of the first run, gravity counts. */
+/** Limit by the velocity and acceleration of points, at most dt; 0: a velocity is not finite. At
+ *  the start of a run there are no forces yet. Those at the end of the last run count by the limit
+ *  that they gave, also if that run has written the restart file; at the start of the first run,
+ *  gravity counts. */
 double MPMFlow::limit_of_motion(double dt, tagint &tag) const
 {
   double g[3] = {0.0, 0.0, 0.0};

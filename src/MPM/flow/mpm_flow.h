@@ -23,8 +23,8 @@ struct MPMFlowPoints;
 
 /** Incompressible flow with free surfaces: its parts, and its step as a list of stages.
  *
- *  Points give momentum to the faces of a staggered lattice, forces and the pressure change the velocities of the faces, and
- *  points move with these velocities. */
+ *  Points give momentum to the faces of a staggered lattice, forces and the pressure change the
+ *  velocities of the faces, and points move with these velocities. */
 class MPMFlow : protected Pointers {
  public:
   MPMIncompressibleOptions
@@ -35,8 +35,8 @@ class MPMFlow : protected Pointers {
   MPMFlowResults results;    ///< of the last step
   MPMFlowChecks checks;
 
-  /** groupbit: of the points. id: of the fix, for messages. gradient: [n][flow_slopes(dim)] gradients of the velocities of
-   *  points, or null; see has_gradients(). */
+  /** groupbit: of the points. id: of the fix, for messages. gradient: [n][flow_slopes(dim)]
+   *  gradients of the velocities of points, or null; see has_gradients(). */
   MPMFlow(class LAMMPS *, const MPMIncompressibleOptions &, int groupbit, const std::string &id,
           const MPMRows &gradient);
 
@@ -44,7 +44,8 @@ class MPMFlow : protected Pointers {
   bool has_gradients() const;
   /** Start of a run: finds regions, bodies, grains, and inflow. Collective. */
   void init();
-  /** Start of a run, after init() and MPMFlowChecks::check_points(): finds cells, and makes the list of stages. Collective. */
+  /** Start of a run, after init() and MPMFlowChecks::check_points(): finds cells, and makes the
+   *  list of stages. Collective. */
   void start();
   /** A step of duration update->dt. Collective. */
   void step() { stages.run(); }
@@ -58,8 +59,9 @@ class MPMFlow : protected Pointers {
   /** Energy that spreading has added to the points of this rank so far. */
   double energy_of_spreading() const { return spreading_energy; }
 
-  /** State for restart files: duration of the last step, limit of the next one with its forces, the share that points keep,
-   *  halvings, motion of regions, and gas; complete on the first rank. Collective. */
+  /** State for restart files: duration of the last step, limit of the next one with its forces, the
+   *  share that points keep, halvings, motion of regions, and gas; complete on the first rank.
+   *  Collective. */
   std::vector<double> restart_data() const;
   /** Takes what restart_data() has given. */
   void restart(const double *from);
@@ -72,15 +74,15 @@ class MPMFlow : protected Pointers {
   MPMFlowMomentum momentum;
   MPMStageList stages;
 
-  // of this step: its duration and that of the one before, share of it in which forces act before points move;
-  // do the durations differ, and do points keep a part of their velocities?
+  // of this step: its duration and that of the one before, share of it in which forces act before
+  // points move; do the durations differ, and do points keep a part of their velocities?
   struct {
     double dt, dt_before, part;
     bool differs, keeps;
   } now = {};
   double dt_before = 0.0;    // duration of the last step; 0: none so far
-  mutable double limit_before =
-      0.0;    // last stable_dt() with forces; after a restart, of all ranks; 0: none
+  // last stable_dt() with forces; after a restart, of all ranks; 0: none
+  mutable double limit_before = 0.0;
   bool forces_known = false;        // false at the start of a run, when forces are cleared
   bool stiffness_known = false;     // was check_stiffness() done in this run?
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step

@@ -11,8 +11,8 @@
 using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
-   Velocities and flags go in one message, [cell][velocity, known]. A layer is added to the faces that are
-   still unknown, which are few, once all of it is found.
+   Velocities and flags go in one message, [cell][velocity, known]. A layer is added to the faces
+   that are still unknown, which are few, once all of it is found.
 ------------------------------------------------------------------------- */
 
 void MPMFlowAir::extend(std::vector<double> &velocity, std::vector<double> &known)

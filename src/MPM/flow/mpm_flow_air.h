@@ -15,16 +15,18 @@
 
 namespace LAMMPS_NS {
 
-/** Extends the velocities of the water to faces in the air that points near the surface reach: layer by layer, as means of
- *  the known velocities around. */
+/** Extends the velocities of the water to faces in the air that points near the surface reach:
+ *  layer by layer, as means of the known velocities around. */
 class MPMFlowAir {
  public:
-  /** Layers of faces that a point just below the surface reaches, also from its place after half a step. */
+  /** Layers of faces that a point just below the surface reaches, also from its place after half a
+   *  step. */
   static constexpr int LAYERS = 3;
 
   explicit MPMFlowAir(const MPMFlowLattice &cells) : cells(cells) {}
 
-  /** velocity, known (1 or 0): [cell][dim], of owned cells before and of all cells afterwards. Collective. */
+  /** velocity, known (1 or 0): [cell][dim], of owned cells before and of all cells afterwards.
+   *  Collective. */
   void extend(std::vector<double> &velocity, std::vector<double> &known);
   double memory_usage() const
   {

@@ -19,19 +19,22 @@ class FixMPMRigid;
 class MPMFlowPressure;
 class MPMFlowRegions;
 
-/** Rigid bodies (fix mpm/rigid) in a flow, whose motion is found together with the pressure. The change of the velocities of a
- *  body by the pressure, and the flux that moves with its surface, are part of the equation for the pressure (C. Batty,
- *  F. Bertails, R. Bridson, ACM Trans. Graph. 26 (2007) 100). So bodies that are lighter than the water that they displace are
- *  as stable as heavy ones.
+/** Rigid bodies (fix mpm/rigid) in a flow, whose motion is found together with the pressure. The
+ *  change of the velocities of a body by the pressure, and the flux that moves with its surface,
+ *  are part of the equation for the pressure (C. Batty, F. Bertails, R. Bridson, ACM Trans. Graph.
+ *  26 (2007) 100). So bodies that are lighter than the water that they displace are as stable as
+ *  heavy ones.
  *
- *  A body b with the velocities U (of its center, and angular ones) gives a cell c the outflow w_c.U, where w_c are sums over
- *  the faces of the cell: closed share of the face times the velocity of the wall in its middle for unit velocities.
- *  Potentials psi = dt p/density of cells give the body the impulse density h^(dim-1) sum w_c psi_c.
+ *  A body b with the velocities U (of its center, and angular ones) gives a cell c the outflow
+ *  w_c.U, where w_c are sums over the faces of the cell: closed share of the face times the
+ *  velocity of the wall in its middle for unit velocities. Potentials psi = dt p/density of cells
+ *  give the body the impulse density h^(dim-1) sum w_c psi_c.
  *
- *  The pressure in the middle of a cell differs from the pressure at the wall; for a flat wall the error is the same in all of
- *  its cells, at most the weight of half a spacing of water. The part of the error by the acceleration g of the water is
- *  known, dt g.r with r from the middle of the cell to the wall, and is included in the loads. With several liquids, it is that of
- *  the density of the cell. */
+ *  The pressure in the middle of a cell differs from the pressure at the wall; for a flat wall the
+ *  error is the same in all of its cells, at most the weight of half a spacing of water. The part
+ *  of the error by the acceleration g of the water is known, dt g.r with r from the middle of the
+ *  cell to the wall, and is included in the loads. With several liquids, it is that of the density
+ *  of the cell. */
 class MPMFlowBodies {
  public:
   MPMFlowBodies(class LAMMPS *lmp, const MPMFlowLattice &cells, MPMFlowRegions &regions,
@@ -45,11 +48,12 @@ class MPMFlowBodies {
   void init();
   bool any() const { return !bodies.empty(); }
 
-  /** Start of a step, when wet cells are known: finds the velocities of bodies after a duration with all forces except the
-   *  pressure, and gives them to the walls. gravity: [3] acceleration of the water by its weight. */
+  /** Start of a step, when wet cells are known: finds the velocities of bodies after a duration
+   *  with all forces except the pressure, and gives them to the walls. gravity: [3] acceleration of
+   *  the water by its weight. */
   void begin(double duration, const double *gravity, const MPMFlowPressure &);
-  /** Adds to y, in owned cells, the change of the outflow over h by the motion of bodies that potentials x of all cells
-   *  cause. Collective. */
+  /** Adds to y, in owned cells, the change of the outflow over h by the motion of bodies that
+   *  potentials x of all cells cause. Collective. */
   void add(const double *x, double *y) const;
   /** Adds the effect of the potentials to the velocities of bodies and walls. Collective. */
   void end(const double *psi);

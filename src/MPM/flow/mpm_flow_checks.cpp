@@ -85,8 +85,8 @@ void MPMFlowChecks::check_points()
   check_liquids();
 }
 
-/** Checks the groups of liquids. They have the points that there were at the time of their command; an empty
- *  group is no liquid. */
+/** Checks the groups of liquids. They have the points that there were at the time of their command;
+ *  an empty group is no liquid. */
 void MPMFlowChecks::check_liquids()
 {
   std::vector<int> mine(options.liquids.size(), 0), all(options.liquids.size(), 0);

@@ -15,22 +15,26 @@
 
 namespace LAMMPS_NS {
 
-/** Checks of a flow before a run: its points, groups, and what else is in the box. Each stops with an error, or warns once. */
+/** Checks of a flow before a run: its points, groups, and what else is in the box. Each stops with
+ *  an error, or warns once. */
 class MPMFlowChecks : protected Pointers {
  public:
   /** id: of the fix. */
   MPMFlowChecks(class LAMMPS *, const MPMIncompressibleOptions &, MPMFlowLiquids &,
                 const MPMFlowParts &, const std::string &id);
 
-  /** Gives a mass to points that have none yet, and checks all points and groups. Finds the densities of solids. */
+  /** Gives a mass to points that have none yet, and checks all points and groups. Finds the
+   *  densities of solids. */
   void check_points();
   /** Checks for other fixes in the same box whose points this flow would go through. */
   void check_others();
   /** Refuses points outside of the box. */
   void check_box() const;
-  /** Refuses what the volume of a pocket, which follows from the flow through its surface, does not account for. */
+  /** Refuses what the volume of a pocket, which follows from the flow through its surface, does not
+   *  account for. */
   void check_gas();
-  /** Refuses points that begin deep in a wall. Points near its surface are moved out of it in the first step. */
+  /** Refuses points that begin deep in a wall. Points near its surface are moved out of it in the
+   *  first step. */
   void check_depths() const;
   /** Refuses a time step that is too large for the stiffness of solids. */
   void check_stiffness() const;

@@ -54,8 +54,8 @@ void MPMFlowCutCell::add_positive(double a, double b, double *sum)
   sum[1] += 0.5 * length * (1.0 - length) * (a > b ? -1.0 : 1.0);
 }
 
-/** Adds to sum[3] the area and its moments, times weight, of the part of a triangle in which a linear
- *  function with the values f at the corners is positive. */
+/** Adds to sum[3] the area and its moments, times weight, of the part of a triangle in which a
+ *  linear function with the values f at the corners is positive. */
 static void add_triangle(const double f[3], const double corner[3][2], double weight, double *sum)
 {
   double x[4][2];    // corners of the positive part, a triangle or a square

@@ -27,8 +27,8 @@ using MathConst::MY_PI;
 
 #ifdef MPM_FFTW
 
-/** The cells of the layers and of the lines that a rank has, and their transforms. Plans are estimated, so that rounding does
- *  not depend on a measurement. */
+/** The cells of the layers and of the lines that a rank has, and their transforms. Plans are
+ *  estimated, so that rounding does not depend on a measurement. */
 struct MPMFlowFourier::Transforms {
   struct Part {
     double *values = nullptr;
@@ -157,7 +157,8 @@ bool MPMFlowFourier::Axis::same_transform(const Axis &other) const
   return n == other.n && end[0] == other.end[0] && end[1] == other.end[1];
 }
 
-/** The least number that is not less than n and has no prime factor above 31: transforms of all other lengths are slow. */
+/** The least number that is not less than n and has no prime factor above 31: transforms of all
+ *  other lengths are slow. */
 static int fast_length(int n)
 {
   for (;; n++) {

@@ -15,17 +15,19 @@
 namespace LAMMPS_NS {
 class MPMFlowLattice;
 
-/** Solves Poisson's equation with the same weight at all faces in the box around the wet cells, by Fourier transforms, as a
- *  preconditioner of the equations of the pressure (MPMFlowPoisson).
+/** Solves Poisson's equation with the same weight at all faces in the box around the wet cells, by
+ *  Fourier transforms, as a preconditioner of the equations of the pressure (MPMFlowPoisson).
  *
- *  A periodic axis has all of its period. At an end of another axis, no water flows if most of the outermost wet cells have a
- *  wall there. Otherwise psi is zero half a cell beyond them: most of the water is then next to air. The functions of an axis
- *  are those sines and cosines that fit its two ends (S.A. Martucci, IEEE Trans. Signal Process. 42 (1994) 1038; types II and
- *  IV). Where water fills the box, the solution is exact. Elsewhere it ignores that dry cells of the box have no water, and the
- *  number of iterations grows about as the square root of the number of cells along an axis.
+ *  A periodic axis has all of its period. At an end of another axis, no water flows if most of the
+ *  outermost wet cells have a wall there. Otherwise psi is zero half a cell beyond them: most of
+ *  the water is then next to air. The functions of an axis are those sines and cosines that fit its
+ *  two ends (S.A. Martucci, IEEE Trans. Signal Process. 42 (1994) 1038; types II and IV). Where
+ *  water fills the box, the solution is exact. Elsewhere it ignores that dry cells of the box have
+ *  no water, and the number of iterations grows about as the square root of the number of cells
+ *  along an axis.
  *
- *  A rank has layers of the box across its last axis for the transforms along the other ones, and lines for those along the
- *  last one. Transforms are those of FFTW. */
+ *  A rank has layers of the box across its last axis for the transforms along the other ones, and
+ *  lines for those along the last one. Transforms are those of FFTW. */
 class MPMFlowFourier {
  public:
   MPMFlowFourier(class LAMMPS *, const MPMFlowLattice &);
@@ -35,12 +37,13 @@ class MPMFlowFourier {
   static bool is_there();
 
   void begin();    ///< removes all cells
-  /** Adds a wet cell of this rank. index: [dim] of the cell; closed: bit 2 d + s: the side s along the axis d is closed;
-   *  is_wanted: have residuals and solutions a value for it? */
+  /** Adds a wet cell of this rank. index: [dim] of the cell; closed: bit 2 d + s: the side s along
+   *  the axis d is closed; is_wanted: have residuals and solutions a value for it? */
   void add(const int *index, int closed, bool is_wanted);
   /** Prepares the transforms when all cells are there. weight: of the faces. Collective. */
   void arrange(double weight);
-  /** Replaces right sides by solutions. values: [wanted cell], in the order of add(). Collective. */
+  /** Replaces right sides by solutions. values: [wanted cell], in the order of add().
+   *  Collective. */
   void solve(std::vector<double> &values);
 
   double memory_usage() const;

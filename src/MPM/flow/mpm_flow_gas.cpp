@@ -18,7 +18,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// share of its difference from the volume that points leave free by which a volume changes in a step
+// share of its difference from the volume that points leave free by which a volume changes in a
+// step
 static constexpr double FOLLOWS = 0.02;
 // least volume of a pocket, in cells; least volume after a step, over that before it
 static constexpr double LEAST_VOLUME = 0.1, LEAST_CHANGE = 0.2;
@@ -123,8 +124,8 @@ void MPMFlowGas::begin(const std::vector<double> &rates)
 }
 
 /* ----------------------------------------------------------------------
-   Hands the gas of the former pockets to the present ones. Outside air that is closed in keeps its pressure.
-   A pocket that opens within the fluid has no gas, and the pressure outside.
+   Hands the gas of the former pockets to the present ones. Outside air that is closed in keeps its
+   pressure. A pocket that opens within the fluid has no gas, and the pressure outside.
 ------------------------------------------------------------------------- */
 
 void MPMFlowGas::hand_on(const std::vector<double> &rates)

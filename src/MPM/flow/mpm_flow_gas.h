@@ -23,10 +23,11 @@ struct MPMFlowGasLaw {
 
 /** Gas in the pockets of a flow. It has no inertia, so that each pocket has one pressure.
  *
- *  A pocket has an amount of gas, given as the volume that it has at the pressure p of the law, and a volume. The volume
- *  changes by the flux of the velocities of the lattice through the surface of the pocket. This is exact if points move with
- *  these velocities, and does not jump when cells become wet or dry. In addition, the volume slowly follows the volume that
- *  points leave empty. Amounts and volumes of pockets that merge are added; those of a pocket that splits are shared in
+ *  A pocket has an amount of gas, given as the volume that it has at the pressure p of the law, and
+ *  a volume. The volume changes by the flux of the velocities of the lattice through the surface of
+ *  the pocket. This is exact if points move with these velocities, and does not jump when cells
+ *  become wet or dry. In addition, the volume slowly follows the volume that points leave empty.
+ *  Amounts and volumes of pockets that merge are added; those of a pocket that splits are shared in
  *  proportion to the numbers of cells. */
 class MPMFlowGas : protected Pointers {
  public:
@@ -35,8 +36,8 @@ class MPMFlowGas : protected Pointers {
   MPMFlowGas(class LAMMPS *, const MPMFlowLattice &, const MPMFlowPressure &,
              const MPMFlowGasLaw &);
 
-  /** Finds the pockets for the cells that are wet now. share: [cell] share of cells that points fill; velocity: [cell][dim]
-   *  of faces before the step, for new pockets. Collective. */
+  /** Finds the pockets for the cells that are wet now. share: [cell] share of cells that points
+   *  fill; velocity: [cell][dim] of faces before the step, for new pockets. Collective. */
   void find(const std::vector<double> &share, const double *velocity);
   bool known() const { return is_known; }    ///< has find() or restart() been called?
   /** Changes the volumes by velocities of faces [cell][dim] in the time dt. Collective. */
@@ -55,7 +56,8 @@ class MPMFlowGas : protected Pointers {
   double highest() const;    ///< highest pressure in these; zero: there are none
   double lowest() const;     ///< lowest pressure in these
   double volume() const;     ///< of all of these
-  /** Work of compression from the pressure p, less the work of the air outside [pressure*volume]. */
+  /** Work of compression from the pressure p, less the work of the air outside
+   *  [pressure*volume]. */
   double energy() const;
 
   /** State for restart files. */

@@ -120,7 +120,8 @@ double MPMFlowGasRows::at_wall(int axis, int side) const
   return sum * std::pow(cells.lattice.h, cells.lattice.dim - 1);
 }
 
-/** The surface of a pocket is zero as a vector sum: a region has the part that water and box do not have. */
+/** The surface of a pocket is zero as a vector sum: a region has the part that water and box do not
+ *  have. */
 void MPMFlowGasRows::add_to_region(double *force) const
 {
   const int dim = cells.lattice.dim;

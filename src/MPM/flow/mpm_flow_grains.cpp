@@ -166,8 +166,8 @@ template <int dim> double MPMFlowGrains::share_around(const Grain &g, double *mo
 }
 
 /* ----------------------------------------------------------------------
-   F = K w + M [(U' - U)/dt - g] with w = U' - v, v = v* + dt F/m. K w is linearized about the slip that is
-   left when U' = U, so that laws that grow with the square of the slip do not oscillate.
+   F = K w + M [(U' - U)/dt - g] with w = U' - v, v = v* + dt F/m. K w is linearized about the slip
+   that is left when U' = U, so that laws that grow with the square of the slip do not oscillate.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowGrains::find_force(Grain &g)
@@ -199,9 +199,9 @@ template <int dim> void MPMFlowGrains::find_force(Grain &g)
         held * (stiff * (g.before[d] - v[d]) - steeper * left * slip[d] - g.displaced * gravity[d]);
   g.rate = held * (stiff + g.displaced / duration);
 
-  // The fluid that a grain displaces has mass and weight on the lattice. If it is not to have these, it
-  // gets back the parts of both that it does not need: the force of the pressure around a grain, which
-  // moves and bears the fluid in its place
+  // The fluid that a grain displaces has mass and weight on the lattice. If it is not to have
+  // these, it gets back the parts of both that it does not need: the force of the pressure around a
+  // grain, which moves and bears the fluid in its place
 
   const double without = fix.displaces() ? g.displaced : 0.0;
   const int width = 3 * dim + 1;
@@ -295,8 +295,8 @@ void MPMFlowGrains::end(const std::vector<double> &velocity)
 }
 
 /* ----------------------------------------------------------------------
-   The force on the faces next to a wall bends the pressure, but the half of a cell at the wall has no such
-   force.
+   The force on the faces next to a wall bends the pressure, but the half of a cell at the wall has
+   no such force.
 ------------------------------------------------------------------------- */
 
 double MPMFlowGrains::at_wall(int axis, int side, const std::vector<double> &before,

@@ -29,8 +29,8 @@ static constexpr double AT_FACE = 1.0e-6;
 // least component of the direction of a flow that counts as along an axis of the lattice
 static constexpr double ALONG = 1.0 - 1.0e-9;
 
-// differences of shares of faces, and of squares of distances in spacings, that count as none; relative
-// difference of velocities in inlets that is small
+// differences of shares of faces, and of squares of distances in spacings, that count as none;
+// relative difference of velocities in inlets that is small
 static constexpr double ALIKE = 1.0e-6, LIKE_POINTS = 0.05;
 // least open part of a face over the share of a section in it: that
 // of a corner into which columns of points just fit
@@ -47,8 +47,8 @@ MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, int group
   }
 }
 
-/** Finds the faces across a inlet, and the share of each that is in its section, from the columns of its
- *  points. */
+/** Finds the faces across a inlet, and the share of each that is in its section, from the columns
+ *  of its points. */
 void MPMFlowInflow::find_section(Inlet &one) const
 {
   const int dim = cells.lattice.dim;
@@ -92,9 +92,9 @@ void MPMFlowInflow::find_section(Inlet &one) const
     one.section.push_back({{index[0], index[1]}, area / face});
 }
 
-/** Replaces the section by whole cells with the same flow: the cells of which it has most, as many as its
- *  area amounts to. Cells that are alike by symmetry are taken or left out together, if the velocity is then
- *  about that of the points. */
+/** Replaces the section by whole cells with the same flow: the cells of which it has most, as many
+ *  as its area amounts to. Cells that are alike by symmetry are taken or left out together, if the
+ *  velocity is then about that of the points. */
 void MPMFlowInflow::round_off(Inlet &one) const
 {
   auto &section = one.section;
@@ -132,8 +132,8 @@ void MPMFlowInflow::round_off(Inlet &one) const
   section.swap(whole);
 }
 
-/** The flow through a face that a region cuts is its velocity times its open share. This part gets the flow
- *  of all of the section. */
+/** The flow through a face that a region cuts is its velocity times its open share. This part gets
+ *  the flow of all of the section. */
 void MPMFlowInflow::find(const MPMFlowRegions *regions)
 {
   const int dim = cells.lattice.dim;

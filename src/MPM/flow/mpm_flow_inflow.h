@@ -17,26 +17,30 @@ namespace LAMMPS_NS {
 class FixMPMEmit;
 class MPMFlowRegions;
 
-/** Fluid that enters an incompressible flow through the inlets of fix mpm/emit, along an axis of the lattice.
+/** Fluid that enters an incompressible flow through the inlets of fix mpm/emit, along an axis of
+ *  the lattice.
  *
- *  Faces across a inlet, from its upstream to its downstream end, have the velocity of the inlet times the share of the face
- *  that is in its section, and the pressure does not change it. The cell upstream of the first of these faces has a source of
- *  the same flux, so that it does not matter what is behind the inlet: a wall, air, or water. Points in the inlet move
- *  rigidly with the velocity of the inlet. So the volume that enters is that of the points, wherever the section is relative
- *  to the cells. */
+ *  Faces across a inlet, from its upstream to its downstream end, have the velocity of the inlet
+ *  times the share of the face that is in its section, and the pressure does not change it. The
+ *  cell upstream of the first of these faces has a source of the same flux, so that it does not
+ *  matter what is behind the inlet: a wall, air, or water. Points in the inlet move rigidly with
+ *  the velocity of the inlet. So the volume that enters is that of the points, wherever the section
+ *  is relative to the cells. */
 class MPMFlowInflow : protected Pointers {
  public:
   /** Takes the inlets of points that belong to the flow of this group. */
   MPMFlowInflow(class LAMMPS *, const MPMFlowLattice &, int groupbit);
-  /** For viscous flows: faces along inlets are held, too, as stress must not bend or turn the fluid in a inlet. Without
-   *  regions, the section then consists of whole cells: a partly filled cell would be slower and hold the others back. */
+  /** For viscous flows: faces along inlets are held, too, as stress must not bend or turn the fluid
+   *  in a inlet. Without regions, the section then consists of whole cells: a partly filled cell
+   *  would be slower and hold the others back. */
   bool clamps = false;
   bool any() const { return !inlets.empty(); }
-  /** Finds the velocities of this step and the faces that are held. regions: those that cut faces; null: none. Stops with an
-   *  error if points do not come along an axis, or if the inlet ends in the first cell at a wall. */
+  /** Finds the velocities of this step and the faces that are held. regions: those that cut faces;
+   *  null: none. Stops with an error if points do not come along an axis, or if the inlet ends in
+   *  the first cell at a wall. */
   void find(const MPMFlowRegions *regions);
-  /** Sets velocities [cell][dim] of faces in inlets, and their mobility to 0, so that they are not solved for; mobility null:
-   *  only velocities. */
+  /** Sets velocities [cell][dim] of faces in inlets, and their mobility to 0, so that they are not
+   *  solved for; mobility null: only velocities. */
   void hold(std::vector<double> &velocity, std::vector<double> *mobility) const;
   /** [cell] volume that enters a cell per time, over its volume [1/time]; of all cells. */
   const std::vector<double> &sources() const { return source; }

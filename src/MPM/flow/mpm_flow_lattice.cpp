@@ -112,8 +112,8 @@ void MPMFlowLattice::sort()
 }
 
 /* ----------------------------------------------------------------------
-   Cells that points can reach are known to all ranks that share them. With one more layer around these, an
-   owner has the neighbors of its cells.
+   Cells that points can reach are known to all ranks that share them. With one more layer around
+   these, an owner has the neighbors of its cells.
 ------------------------------------------------------------------------- */
 
 void MPMFlowLattice::find_cells()
@@ -145,7 +145,8 @@ void MPMFlowLattice::find_cells()
     }
   }
 
-  // ranks share what they reach and the layers around it; where there are periodic images, all of their blocks
+  // ranks share what they reach and the layers around it; where there are periodic images, all of
+  // their blocks
 
   std::vector<uint64_t> shared;
   constexpr int STENCIL = 2, LOWER = 1;    // of points that have a width
@@ -205,8 +206,8 @@ void MPMFlowLattice::find_cells()
   nbuild++;
 }
 
-/** Rank whose part of the box has the middle of a cell: ranks then own about equally many of the cells that
- *  several reach. */
+/** Rank whose part of the box has the middle of a cell: ranks then own about equally many of the
+ *  cells that several reach. */
 int MPMFlowLattice::rank_around(int number) const
 {
   int index[3], unused[3];
@@ -292,8 +293,8 @@ void MPMFlowLattice::list_cells()
   }
 }
 
-/** Lists the images of each axis: of all cells that exist along the other axes, including those beyond
- *  walls. */
+/** Lists the images of each axis: of all cells that exist along the other axes, including those
+ *  beyond walls. */
 void MPMFlowLattice::list_images()
 {
   images.clear();

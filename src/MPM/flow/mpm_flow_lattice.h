@@ -25,14 +25,17 @@ struct MPMFlowWall {
   double v[3] = {0.0, 0.0, 0.0};    ///< velocity of a wall without slip, along itself
 };
 
-/** The cells of a staggered lattice in reach of the points of a group: a Grid whose node i stands for the cell between nodes
- *  i and i + 1 of the lattice and for its lower faces, see lattice/staggered.h.
+/** The cells of a staggered lattice in reach of the points of a group: a Grid whose node i stands
+ *  for the cell between nodes i and i + 1 of the lattice and for its lower faces, see
+ *  lattice/staggered.h.
  *
- *  All ranks have all values in reach of their points, and in requested layers of cells around it (overlap). Each cell is
- *  owned by one rank, which also has its neighbors. Owners compute values, and publish() sends them to the other ranks.
+ *  All ranks have all values in reach of their points, and in requested layers of cells around it
+ *  (overlap). Each cell is owned by one rank, which also has its neighbors. Owners compute values,
+ *  and publish() sends them to the other ranks.
  *
- *  Beyond walls there is a layer of images of cells, so that velocities are of second order next to walls: normal components
- *  are odd, tangential ones even (slip) or odd about the velocity of the wall (stick). */
+ *  Beyond walls there is a layer of images of cells, so that velocities are of second order next to
+ *  walls: normal components are odd, tangential ones even (slip) or odd about the velocity of the
+ *  wall (stick). */
 class MPMFlowLattice : protected Pointers {
  public:
   /** Points that are neighbors in memory and in the same block. */
@@ -59,14 +62,15 @@ class MPMFlowLattice : protected Pointers {
   bool valid = false;           ///< do the blocks belong to the present points?
   bigint nbuild = 0;            ///< how often the blocks have been found
 
-  /** Number of spacings that points may move in a step. Half of it must be in reach of a rank before it moves them. */
+  /** Number of spacings that points may move in a step. Half of it must be in reach of a rank
+   *  before it moves them. */
   static constexpr double MOST_MOTION = 2.0;
 
   /** groupbit: of the group of the points. */
   MPMFlowLattice(class LAMMPS *, const MPM_NS::Lattice &, int groupbit);
 
-  /** Finds the walls. Stops with an error if the lattice does not fit the box, for example if a length is not a multiple of
-   *  the spacing. style: of the fix, for messages. */
+  /** Finds the walls. Stops with an error if the lattice does not fit the box, for example if a
+   *  length is not a multiple of the spacing. style: of the fix, for messages. */
   void check_box(const char *style);
   /** Is atom i a point of the group? */
   bool is_point(int i) const;
@@ -89,14 +93,15 @@ class MPMFlowLattice : protected Pointers {
   /** Finds the cell base of a place; returns the slot of its block, -1: there is none. */
   int find_block(const double *x, int base[3]) const;
 
-  /** Moves the values that points gave to images beyond walls to the cells within, and adds up values of periodic images and
-   *  ranks. values: [cell][width], the first dim of a cell are momenta of its faces, the next dim masses, the next dim
-   *  forces; all others are plain sums. moving false: walls are at rest. Collective. */
+  /** Moves the values that points gave to images beyond walls to the cells within, and adds up
+   *  values of periodic images and ranks. values: [cell][width], the first dim of a cell are
+   *  momenta of its faces, the next dim masses, the next dim forces; all others are plain sums.
+   *  moving false: walls are at rest. Collective. */
   void sum(double *values, int width, bool moving = true) const;
   /** Adds up values [cell][width] of periodic images and ranks, without walls. Collective. */
   void sum_freely(double *values, int width) const;
-  /** Sends values [cell][width] of owners to other ranks and periodic images; the values of all others must be zero.
-   *  Collective. */
+  /** Sends values [cell][width] of owners to other ranks and periodic images; the values of all
+   *  others must be zero. Collective. */
   void publish(double *values, int width) const;
   /** As publish(), for values that all ranks have already and of which owners have changed some. */
   void renew(double *values, int width) const;
@@ -106,9 +111,9 @@ class MPMFlowLattice : protected Pointers {
   void keep_owned(double *values, int width) const;
   /** Sets velocities [cell][dim] at walls and beyond; moving false: walls are at rest. */
   void reflect_velocities(double *values, bool moving = true) const;
-  /** Sets the velocities [cell][dim] with which points move, at walls and beyond. Normal to a wall without slip, the velocity
-   *  grows with the square of the distance, so that it is even, and the face in the wall has the value for which the
-   *  interpolated velocity is zero there. */
+  /** Sets the velocities [cell][dim] with which points move, at walls and beyond. Normal to a wall
+   *  without slip, the velocity grows with the square of the distance, so that it is even, and the
+   *  face in the wall has the value for which the interpolated velocity is zero there. */
   void reflect_paths(double *values) const;
   /** Sets values in the middle of images of cells to those of the cells. */
   void reflect_cells(double *values) const;
@@ -121,10 +126,11 @@ class MPMFlowLattice : protected Pointers {
   }
   /** Is a cell within walls? */
   bool is_inside(int64_t number) const;
-  /** Number of a cell, or of the cell of which it is a periodic image; -1: this rank does not have it. */
+  /** Number of a cell, or of the cell of which it is a periodic image; -1: this rank does not have
+   *  it. */
   int canonical(const int index[3]) const;
-  /** Sets values in the middle of images of cells by linear extrapolation if inside(number) is true for the last two cells,
-   *  else to those of the cells. */
+  /** Sets values in the middle of images of cells by linear extrapolation if inside(number) is true
+   *  for the last two cells, else to those of the cells. */
   template <class F> void extrapolate_cells(double *values, const F &inside) const
   {
     for (auto image = images.rbegin(); image != images.rend(); ++image) {

@@ -25,8 +25,9 @@ using namespace MPM_NS;
 
 // residuals that are as small as this share of speed/spacing are rounding
 static constexpr double ROUNDING = 1.0e-14;
-// longest explicit step with several viscosities, over that of fraction 1: drops of a few points in a fluid that is a
-// thousand times lighter were stable at 1.8 and unstable at 1.9, where one liquid is stable up to 2
+// longest explicit step with several viscosities, over that of fraction 1: drops of a few points in
+// a fluid that is a thousand times lighter were stable at 1.8 and unstable at 1.9, where one liquid
+// is stable up to 2
 static constexpr double MOST_OF_SEVERAL = 1.5;
 // share of the inflow that may have no room, because of the tolerance of the pressure
 static constexpr double NOT_IN = 0.05;
@@ -61,11 +62,11 @@ void MPMFlowMomentum::find_gravity(double *g) const
 /* ----------------------------------------------------------------------
    Velocities at the end of a duration, from those that are predicted, and the pressure.
 
-   Where implicit viscosity does not converge, the duration is halved, because its equations contain dt
-   nu/h^2. The rest is done in parts of this length, each from the velocities at the end of the part before.
-   Points and the lattice stay as they are until the last part is done, and then move with its velocities. All
-   other equations are independent of the duration: if these do not converge, parts would not help. Potentials
-   add up to those of the mean pressure.
+   Where implicit viscosity does not converge, the duration is halved, because its equations contain
+   dt nu/h^2. The rest is done in parts of this length, each from the velocities at the end of the
+   part before. Points and the lattice stay as they are until the last part is done, and then move
+   with its velocities. All other equations are independent of the duration: if these do not
+   converge, parts would not help. Potentials add up to those of the mean pressure.
 ------------------------------------------------------------------------- */
 
 void MPMFlowMomentum::solve(double duration)
@@ -102,8 +103,8 @@ void MPMFlowMomentum::solve(double duration)
   if (parts.tension) find_tension(duration);
 }
 
-/** The same for a duration in one part. Returns the outcome of the implicit viscosity; if it has not
- *  converged, the velocities are of no use. */
+/** The same for a duration in one part. Returns the outcome of the implicit viscosity; if it has
+ *  not converged, the velocities are of no use. */
 SolveReport MPMFlowMomentum::solve_part(double duration)
 {
   if (parts.grains) before_forces = fields.predicted;
@@ -131,7 +132,8 @@ SolveReport MPMFlowMomentum::solve_part(double duration)
   return viscous;
 }
 
-/** Resistance of grains to the flow, and the velocities in inlets, with the mobility of faces for both. */
+/** Resistance of grains to the flow, and the velocities in inlets, with the mobility of faces for
+ *  both. */
 void MPMFlowMomentum::hold_and_resist(double duration)
 {
   if (parts.grains) {
@@ -155,7 +157,8 @@ double MPMFlowMomentum::rounding() const
   return ROUNDING * most_all[0] * std::sqrt((double) atom->natoms);
 }
 
-/** Velocities of faces without divergence, from those that are predicted, with tension, gas, and bodies. */
+/** Velocities of faces without divergence, from those that are predicted, with tension, gas, and
+ *  bodies. */
 SolveReport MPMFlowMomentum::project(double duration, double rounding)
 {
   fields.velocity.assign(fields.predicted.size(), 0.0);
@@ -205,8 +208,9 @@ void MPMFlowMomentum::find_tension(double duration)
 }
 
 /* ----------------------------------------------------------------------
-   Viscous stresses, with what they add to the pressure, at the end of a step without them. The effect
-   of the place of a surface is left to the pressure alone, so that a fluid at rest stays at rest.
+   Viscous stresses, with what they add to the pressure, at the end of a step without them. The
+   effect of the place of a surface is left to the pressure alone, so that a fluid at rest stays at
+   rest.
 ------------------------------------------------------------------------- */
 
 SolveReport MPMFlowMomentum::find_stress(double dt, double rounding)
@@ -270,8 +274,8 @@ void MPMFlowMomentum::add_viscosity(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   Forces on walls, and pressures for points, such that these interpolate zero at the surface and the pressure
-   of walls at walls.
+   Forces on walls, and pressures for points, such that these interpolate zero at the surface and
+   the pressure of walls at walls.
 ------------------------------------------------------------------------- */
 
 void MPMFlowMomentum::find_pressures(double pressure_to_psi)
@@ -321,15 +325,16 @@ void MPMFlowMomentum::find_forces_on_regions(double pressure_to_psi)
 }
 
 /* ----------------------------------------------------------------------
-   Faces in the air to which points give momentum keep it, together with what the pressure changes at the
-   water next to them. Points that are about to fall into the water, or fly off, do not get its velocity
-   before, and a drop that spins goes on spinning.
+   Faces in the air to which points give momentum keep it, together with what the pressure changes
+   at the water next to them. Points that are about to fall into the water, or fly off, do not get
+   its velocity before, and a drop that spins goes on spinning.
 ------------------------------------------------------------------------- */
 
 void MPMFlowMomentum::extend_into_air()
 {
   const int dim = parts.cells.lattice.dim, width = 3 * dim + 1;
-  // changes by viscosity go on into the air, too: otherwise the layer of points at a surface would fall freely
+  // changes by viscosity go on into the air, too: otherwise the layer of points at a surface would
+  // fall freely
   if (parts.viscosity)
     for (std::size_t k = 0; k < fields.predicted.size(); k++)
       fields.predicted[k] -= fields.shift[k];
@@ -358,8 +363,8 @@ void MPMFlowMomentum::extend_into_air()
   parts.cells.reflect_velocities(fields.velocity.data());
 }
 
-/** Checks that what comes in has a way out, or a surface that rises: otherwise the pressure has no solution,
- *  and the one found is that of less inflow. */
+/** Checks that what comes in has a way out, or a surface that rises: otherwise the pressure has no
+ *  solution, and the one found is that of less inflow. */
 void MPMFlowMomentum::check_inflow() const
 {
   double mine[2] = {0.0, 0.0}, all[2];

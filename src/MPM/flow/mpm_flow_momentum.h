@@ -16,22 +16,24 @@
 
 namespace LAMMPS_NS {
 
-/** The momentum equation of a flow: forces, viscosity, and the pressure that keeps velocities free of divergence. */
+/** The momentum equation of a flow: forces, viscosity, and the pressure that keeps velocities free
+ *  of divergence. */
 class MPMFlowMomentum : protected Pointers {
  public:
   /** who: the fix, for errors. */
   MPMFlowMomentum(class LAMMPS *, const MPMIncompressibleOptions &, const MPMFlowLiquids &,
                   MPMFlowParts &, MPMFlowFields &, MPMFlowResults &, const std::string &who);
 
-  /** Finds the velocities at the end of a duration, from those at its start in MPMFlowFields::predicted, and the
-   *  pressure. Collective. */
+  /** Finds the velocities at the end of a duration, from those at its start in
+   *  MPMFlowFields::predicted, and the pressure. Collective. */
   void solve(double duration);
   /** After solve(): pressures for points, and forces on walls and regions. pressure_to_psi: see
    *  MPMFlowGasRows::begin(). Collective. */
   void find_pressures(double pressure_to_psi);
   /** Force per mass by all fix gravity, in units of forces. */
   void find_gravity(double *g) const;
-  /** [cell][dim] share of the gradient of the pressure that changes the velocity of a face; with grains or inflow. */
+  /** [cell][dim] share of the gradient of the pressure that changes the velocity of a face; with
+   *  grains or inflow. */
   const std::vector<double> &mobilities() const { return mobility; }
   double memory_usage() const;
 
@@ -42,8 +44,9 @@ class MPMFlowMomentum : protected Pointers {
   MPMFlowFields &fields;
   MPMFlowResults &results;
   const std::string who;
-  // [cell][dim] psi of free surfaces with tension; velocities before the forces, as they are without the
-  // inflow, and at the start of a part of the duration; velocities before the viscous stress
+  // [cell][dim] psi of free surfaces with tension; velocities before the forces, as they are
+  // without the inflow, and at the start of a part of the duration; velocities before the viscous
+  // stress
   std::vector<double> at_surface, before_forces, without_hold, start_of_part, viscous_velocity;
   std::vector<double> mobility;
   std::vector<double> potentials,

@@ -34,7 +34,8 @@ namespace LAMMPS_NS {
 
 /** Values of a flow on its lattice, in the course of a step. */
 struct MPMFlowFields {
-  /** [cell][3 dim + 1] momentum, mass, and force that points give to faces, and their volume in cells. */
+  /** [cell][3 dim + 1] momentum, mass, and force that points give to faces, and their volume in
+   *  cells. */
   std::vector<double> sums;
   std::vector<double> filled;       ///< [cell] share of its open surroundings that points fill
   std::vector<double> predicted;    ///< [cell][dim] velocities without the pressure
@@ -45,7 +46,8 @@ struct MPMFlowFields {
   std::vector<double> pressures;    ///< [cell]
   std::vector<double> shift;        ///< [cell][dim] displacements by which points spread
   std::vector<double> paths;        ///< [cell][dim] velocities with which points move, if sharp
-  /** [cell][dim] density of the flow over that of faces, see MPMFlowPressure; with several densities. */
+  /** [cell][dim] density of the flow over that of faces, see MPMFlowPressure; with several
+   *  densities. */
   std::vector<double> inverse_density;
   std::vector<double> face_volumes;    ///< [cell][2 dim] volumes of points at faces
   std::vector<double> solid_forces;    ///< [cell][dim] forces of solids
@@ -85,11 +87,12 @@ struct MPMFlowParts {
   std::unique_ptr<MPMFlowGas> gas;    ///< in pockets
   std::unique_ptr<MPMFlowGasRows> gas_rows;
 
-  /** Makes the parts that the options ask for, except those of other fixes. groupbit: of the points. */
+  /** Makes the parts that the options ask for, except those of other fixes. groupbit: of the
+   *  points. */
   MPMFlowParts(class LAMMPS *, const MPMIncompressibleOptions &, MPMFlowLiquids &,
                const MPMFlowFields &, int groupbit);
-  /** Start of a run: bodies, grains, and inflow of other fixes. Stops with an error if parts do not go together.
-   *  groupbit, id: of the fix of this flow. mobility: of faces, if there is inflow. */
+  /** Start of a run: bodies, grains, and inflow of other fixes. Stops with an error if parts do not
+   *  go together. groupbit, id: of the fix of this flow. mobility: of faces, if there is inflow. */
   void init(class LAMMPS *, const MPMIncompressibleOptions &, int groupbit, const std::string &id,
             const std::vector<double> &mobility);
   double memory_usage() const;

@@ -136,8 +136,8 @@ bool MPMFlowPockets::find(const MPMFlowPressure &water)
   return !same;
 }
 
-/** Pockets nearest to the place of a pocket that is no longer there, through whatever is in between, and
- *  numbers of their cells there. */
+/** Pockets nearest to the place of a pocket that is no longer there, through whatever is in
+ *  between, and numbers of their cells there. */
 std::map<int, bigint> MPMFlowPockets::nearest(int before) const
 {
   std::map<int, bigint> found;
@@ -188,8 +188,8 @@ void MPMFlowPockets::compare()
   for (const auto &[pair, many] : common) common_cells.push_back({pair.first, pair.second, many});
 }
 
-/** Finds the pockets of cells of the lattice. A dry cell with its middle in a wall belongs to a pocket next
- *  to it. */
+/** Finds the pockets of cells of the lattice. A dry cell with its middle in a wall belongs to a
+ *  pocket next to it. */
 void MPMFlowPockets::find_lattice(const MPMFlowPressure &water)
 {
   pocket_of_cell.assign(cells.size(), NONE);

@@ -19,15 +19,16 @@ namespace LAMMPS_NS {
 class MPMFlowPressure;
 class MPMFlowRegions;
 
-/** Pockets: connected sets of empty cells between a flow and walls; cells are connected through faces. Most of their cells can
- *  be far from all points, where the lattice of the flow has no cells. So this object has all cells of the box, one number
- *  each, the same on all ranks. Ranks exchange one bit for each cell, and number pockets in the order of their first cells. */
+/** Pockets: connected sets of empty cells between a flow and walls; cells are connected through
+ *  faces. Most of their cells can be far from all points, where the lattice of the flow has no
+ *  cells. So this object has all cells of the box, one number each, the same on all ranks. Ranks
+ *  exchange one bit for each cell, and number pockets in the order of their first cells. */
 class MPMFlowPockets : protected Pointers {
  public:
   static constexpr int NONE = -1;    ///< pocket of a wet or solid cell
 
-  /** Number of cells that a new pocket has in common with one before. If no pocket has cells in common with the one before,
-   *  the nearest ones take their place. */
+  /** Number of cells that a new pocket has in common with one before. If no pocket has cells in
+   *  common with the one before, the nearest ones take their place. */
   struct Overlap {
     int from, to;
     bigint cells;
@@ -39,8 +40,8 @@ class MPMFlowPockets : protected Pointers {
   MPMFlowPockets(class LAMMPS *, const MPMFlowLattice &);
   /** Finds the cells of the box that are solid, those with their middle in a region; null: none. */
   void find_solid(const MPMFlowRegions *);
-  /** Finds the pockets for the cells that are wet now. Returns false if nothing has changed; else overlaps() relate them to the
-   *  pockets before. Collective. */
+  /** Finds the pockets for the cells that are wet now. Returns false if nothing has changed; else
+   *  overlaps() relate them to the pockets before. Collective. */
   bool find(const MPMFlowPressure &);
   int n() const { return (int) infos.size(); }    ///< number of pockets
   bigint cells_of(int pocket) const { return infos[pocket].cells; }
@@ -55,7 +56,8 @@ class MPMFlowPockets : protected Pointers {
   /** Pocket of a cell of the lattice of the flow; NONE: it is in none, or beyond a wall. */
   int pocket(int64_t number) const { return pocket_of_cell[number]; }
 
-  /** For restart files: pairs of the number of a pocket and the number of consecutive cells that have it. */
+  /** For restart files: pairs of the number of a pocket and the number of consecutive cells that
+   *  have it. */
   std::vector<double> runs() const;
   /** Takes n reals of runs(); returns false if they belong to another lattice. */
   bool set_runs(const double *from, std::size_t n);

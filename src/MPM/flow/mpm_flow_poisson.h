@@ -20,11 +20,12 @@ class MPMFlowBodies;
 class MPMFlowFourier;
 class MPMFlowGasRows;
 
-/** The equations of the pressure by places of rows (MPMFlowRows), with a preconditioner: a sweep of Gauss-Seidel, a
- *  correction, and a sweep in reverse order. The correction is by the coarse levels of a multigrid; then the preconditioner is
- *  CellMultigrid::precondition(), except where an odd period has two neighbors of the same half. Or it is by Fourier transforms
- *  of the box around the water. After a sweep from zero, the residual of odd cells is zero, and that of even cells is the sum
- *  from odd ones. */
+/** The equations of the pressure by places of rows (MPMFlowRows), with a preconditioner: a sweep of
+ *  Gauss-Seidel, a correction, and a sweep in reverse order. The correction is by the coarse levels
+ *  of a multigrid; then the preconditioner is CellMultigrid::precondition(), except where an odd
+ *  period has two neighbors of the same half. Or it is by Fourier transforms of the box around the
+ *  water. After a sweep from zero, the residual of odd cells is zero, and that of even cells is the
+ *  sum from odd ones. */
 class MPMFlowPoisson : public MPM_NS::LinearSystem {
  public:
   MPMFlowPoisson(class LAMMPS *lmp, const MPMFlowLattice &cells, MPMFlowRows &rows) :
@@ -34,8 +35,8 @@ class MPMFlowPoisson : public MPM_NS::LinearSystem {
 
   std::vector<double> diagonal, weight;    ///< [place], [place][side]
   MPM_NS::CellMultigrid multigrid;    ///< for these equations; its closed pools are always needed
-  MPMFlowFourier *fourier =
-      nullptr;    ///< for these equations, instead of coarse levels; null: none
+  /** for these equations, instead of coarse levels; null: none */
+  MPMFlowFourier *fourier = nullptr;
   const MPMFlowBodies *bodies = nullptr;    ///< that the pressure moves; null: none
   MPMFlowGasRows *gas = nullptr;            ///< in pockets; null: none
 

@@ -22,13 +22,15 @@ using namespace MPM_NS;
 
 // distance over which points make room for others, in spacings
 static constexpr double SPREAD = 8.0;
-// share of the surroundings of a cell, and mean share of its neighbors, from which on the cell is wet. Water that ends in the
-// middle of cells fills one half of them but for round-off, which must not decide: it depends on the number of ranks
+// share of the surroundings of a cell, and mean share of its neighbors, from which on the cell is
+// wet. Water that ends in the middle of cells fills one half of them but for round-off, which must
+// not decide: it depends on the number of ranks
 static constexpr double HALF = 0.5 + 1.0e-9, SURROUNDED = 0.6;
-// excess of points in a cell cut by a region that may not be real: points come in steps there, and walls do not
+// excess of points in a cell cut by a region that may not be real: points come in steps there, and
+// walls do not
 static constexpr double UNSURE = 0.25;
-// open share of the surroundings of a cell below which its neighbors decide whether it is wet, if it has
-// a least share of water
+// open share of the surroundings of a cell below which its neighbors decide whether it is wet, if
+// it has a least share of water
 static constexpr double OPEN_VOLUME = 0.5, LEAST = 0.2;
 
 /** Depth below a flat surface, in spacings, at which a hat function is filled by this share. */
@@ -45,8 +47,8 @@ double MPMFlowPressure::distance(int64_t wet_cell, int64_t dry) const
   return std::max(nearest, in / (in - out));
 }
 
-/** Factor of the difference of psi, or of psi itself where the other cell is dry: 1/h^2 over the distance in
- *  spacings. */
+/** Factor of the difference of psi, or of psi itself where the other cell is dry: 1/h^2 over the
+ *  distance in spacings. */
 double MPMFlowPressure::weight_to(int64_t wet_cell, int64_t other) const
 {
   const double h = cells.lattice.h;
@@ -88,8 +90,8 @@ double MPMFlowPressure::flux_of_side(const double *velocity, const MPMFlowLattic
   return regions ? regions->aperture(of, axis) * u + regions->flux(of, axis) : u;
 }
 
-/** Are the neighbors of a cell filled so well that the cell between them is water? At a flat surface, their
- *  mean is the share of the cell itself. */
+/** Are the neighbors of a cell filled so well that the cell between them is water? At a flat
+ *  surface, their mean is the share of the cell itself. */
 bool MPMFlowPressure::is_surrounded(const MPMFlowLattice::Cell &cell) const
 {
   double sum = 0.0, sides = 0.0;
@@ -102,8 +104,8 @@ bool MPMFlowPressure::is_surrounded(const MPMFlowLattice::Cell &cell) const
   return sum > SURROUNDED * sides;
 }
 
-/** A cell next to a wall can have too little room for points to show that it is full: it is wet if most of
- *  its open sides are next to wet cells. */
+/** A cell next to a wall can have too little room for points to show that it is full: it is wet if
+ *  most of its open sides are next to wet cells. */
 void MPMFlowPressure::follow_neighbors()
 {
   std::vector<int> changed;
@@ -208,8 +210,8 @@ void MPMFlowPressure::to_cells(const std::vector<double> &row_values,
   cells.publish(cell_values.data(), 1);
 }
 
-/** Gives the same equations to the multigrid preconditioner: owners of cells give the weights of their upper
- *  faces. */
+/** Gives the same equations to the multigrid preconditioner: owners of cells give the weights of
+ *  their upper faces. */
 void MPMFlowPressure::find_levels()
 {
   if (levels_are_there) return;
@@ -293,9 +295,9 @@ SolveReport MPMFlowPressure::project(const double *before, double *after, double
 }
 
 /* ----------------------------------------------------------------------
-   The lift is the psi of the surface next to a cell, and the mean of all surfaces elsewhere; only the rest is
-   solved for. The norm of the right side is then that of what drives a flow, and not that of a pressure
-   divided by small distances.
+   The lift is the psi of the surface next to a cell, and the mean of all surfaces elsewhere; only
+   the rest is solved for. The norm of the right side is then that of what drives a flow, and not
+   that of a pressure divided by small distances.
 ------------------------------------------------------------------------- */
 
 void MPMFlowPressure::find_lift(const std::vector<double> &surface)

@@ -413,8 +413,9 @@ void MPMFlowRegions::find_cuts()
 }
 
 /* ----------------------------------------------------------------------
-   Integrals of the normal times the place over the part of a wall that is in a cell. They are the integrals
-   over the whole surface of the open part, which are its volume, less those over the open faces.
+   Integrals of the normal times the place over the part of a wall that is in a cell. They are the
+   integrals over the whole surface of the open part, which are its volume, less those over the open
+   faces.
 ------------------------------------------------------------------------- */
 
 void MPMFlowRegions::find_moments(Cut &cut) const

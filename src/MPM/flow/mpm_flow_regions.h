@@ -20,32 +20,36 @@ namespace LAMMPS_NS {
 class FixMPMRigid;
 class Region;
 
-/** Regions whose inside is solid for a flow: fixed, with a rigid motion of their own, or with the motion of a fix mpm/rigid.
- *  Cells are cut: fluid flows through the open share of a face, and the rest moves with the wall (Y.T. Ng, C. Min, F. Gibou,
- *  J. Comput. Phys. 228 (2009) 8807). Shares follow from linear functions of the distances at the corners of a cell, which is
- *  exact for planes.
+/** Regions whose inside is solid for a flow: fixed, with a rigid motion of their own, or with the
+ *  motion of a fix mpm/rigid. Cells are cut: fluid flows through the open share of a face, and the
+ *  rest moves with the wall (Y.T. Ng, C. Min, F. Gibou, J. Comput. Phys. 228 (2009) 8807). Shares
+ *  follow from linear functions of the distances at the corners of a cell, which is exact for
+ *  planes.
  *
- *  Faces, cells, and forces are for the place of regions at the start of a step, to which the places of points belong.
- *  Velocities are means over the step, and points are kept out of the place of regions at its end. */
+ *  Faces, cells, and forces are for the place of regions at the start of a step, to which the
+ *  places of points belong. Velocities are means over the step, and points are kept out of the
+ *  place of regions at its end. */
 class MPMFlowRegions : protected Pointers {
  public:
   /** ids: of the regions. */
   MPMFlowRegions(class LAMMPS *, const MPMFlowLattice &, const std::vector<std::string> &ids);
 
-  /** Finds the regions of a run. Stops with an error, whose text begins with name, if one does not exist or cannot be used:
-   *  with open faces, a shape that changes, or a union or intersection that moves. */
+  /** Finds the regions of a run. Stops with an error, whose text begins with name, if one does not
+   *  exist or cannot be used: with open faces, a shape that changes, or a union or intersection
+   *  that moves. */
   void init(const std::string &name);
   /** Notes the state of regions at the start of a run. */
   void start_run();
-  /** Finds the motion of regions in this step, and apertures at its start. duration 0: no motion. */
+  /** Finds the motion of regions in this step, and apertures at its start. duration 0: no
+   *  motion. */
   void find(double duration);
   int n() const { return walls.size(); }    ///< number of regions
   bool any_move() const { return any_moves; }
 
   /** The rigid body whose shape is this region; null: none. */
   FixMPMRigid *body(int wall) const { return walls[wall].body; }
-  /** Share of the lower face of a cell along an axis that a body closes. arm: [3] from the center of the body to the middle of
-   *  the face. */
+  /** Share of the lower face of a cell along an axis that a body closes. arm: [3] from the center
+   *  of the body to the middle of the face. */
   double closed_by(int wall, int64_t cell, int axis, double *arm) const;
   /** way: [3] vector from the middle of a cell to the surface of a wall. */
   void find_wall(int wall, const MPMFlowLattice::Cell &, double *way) const;
@@ -58,40 +62,46 @@ class MPMFlowRegions : protected Pointers {
   double volume_fraction(int64_t cell) const { return volume_fractions[cell]; }
   /** Are all faces of a cell closed? */
   bool is_closed(int64_t cell) const { return closed[cell]; }
-  /** Flux of the walls through the lower face of a cell, per area [velocity]: closed share times velocity of the wall. */
+  /** Flux of the walls through the lower face of a cell, per area [velocity]: closed share times
+   *  velocity of the wall. */
   double flux(int64_t cell, int axis) const
   {
     return fluxes.empty() ? 0.0 : fluxes[cell * dim + axis];
   }
 
-  /** Converts shares of whole cells that points fill to shares of their open parts; of all cells before and afterwards. Where
-   *  next to nothing of a cell is open, the cells around count, too. Collective. */
+  /** Converts shares of whole cells that points fill to shares of their open parts; of all cells
+   *  before and afterwards. Where next to nothing of a cell is open, the cells around count, too.
+   *  Collective. */
   void normalize(std::vector<double> &share) const;
-  /** Distance of the middle of the lower face of a cell from walls, positive in the flow, at most far. velocity: component
-   *  along the axis of the velocity of the nearest wall, extended rigidly to the face. */
+  /** Distance of the middle of the lower face of a cell from walls, positive in the flow, at most
+   *  far. velocity: component along the axis of the velocity of the nearest wall, extended rigidly
+   *  to the face. */
   double level_of_face(int64_t cell, int axis, double far, double &velocity) const;
-  /** Distance of a place in a cell from walls, positive in the flow, at most far. offset: [3] from the lower corner, in spacings.
-   *  wall: the nearest one. normal: [3] unit vector out of it, not set beyond far. */
+  /** Distance of a place in a cell from walls, positive in the flow, at most far. offset: [3] from
+   *  the lower corner, in spacings. wall: the nearest one. normal: [3] unit vector out of it, not
+   *  set beyond far. */
   double plane_at(int64_t cell, const double *offset, double far, double *normal, int &wall) const;
-  /** Component of the velocity of a wall along the axis of the lower face of a cell, extended rigidly to its middle. */
+  /** Component of the velocity of a wall along the axis of the lower face of a cell, extended
+   *  rigidly to its middle. */
   double velocity_at_face(int wall, int64_t cell, int axis) const;
   /** Distance of the middle of a cell from walls, positive in the flow, at most a few spacings. */
   double level(int64_t cell) const { return levels[cell]; }
   /** Depth of the middle of a cell in a region; out: [3] unit vector out of it. */
   double find_way_out(const MPMFlowLattice::Cell &cell, double *out) const;
 
-  /** Gives velocities [cell][dim] of closed faces near walls the normal component of the wall (moving), or none; of all cells
-   *  before and afterwards. Collective. */
+  /** Gives velocities [cell][dim] of closed faces near walls the normal component of the wall
+   *  (moving), or none; of all cells before and afterwards. Collective. */
   void hold(std::vector<double> &velocity, bool moving = true) const;
   /** Moves a point that is in a wall out of it, and removes its velocity into the wall. */
   void keep_outside(double *x, double *v) const;
   /** Depth of a place in a wall, positive inside, between -far and far. */
   double depth(const double *x, double far) const;
 
-  /** Adds the force of potentials psi of owned cells for which wet(number) is true to force[3 n()]. Along a wall, psi differs
-   *  from psi in the middle of a cell by its known slope: push(cell, slope) gives the velocity that forces give to the water
-   *  around a cell, and returns the density of the cell over that in psi. The pressure balances it, less share times the change of
-   *  the velocity of the wall. */
+  /** Adds the force of potentials psi of owned cells for which wet(number) is true to force[3 n()].
+   *  Along a wall, psi differs from psi in the middle of a cell by its known slope: push(cell,
+   *  slope) gives the velocity that forces give to the water around a cell, and returns the density
+   *  of the cell over that in psi. The pressure balances it, less share times the change of the
+   *  velocity of the wall. */
   template <class Wet, class Push>
   void add_forces(const double *psi, const Wet &wet, const Push &push, double share,
                   double *force) const
@@ -109,11 +119,12 @@ class MPMFlowRegions : protected Pointers {
       }
     }
   }
-  /** Velocities of the walls in the last step, relative to which changes in the next step are found; for restart files. */
+  /** Velocities of the walls in the last step, relative to which changes in the next step are
+   *  found; for restart files. */
   std::vector<double> motion() const;
   void set_motion(const std::vector<double> &);
-  /** Extrapolates psi linearly from wet cells to closed cells that points near walls reach. psi: of all cells, zero in these
-   *  before. Collective. */
+  /** Extrapolates psi linearly from wet cells to closed cells that points near walls reach. psi: of
+   *  all cells, zero in these before. Collective. */
   void extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const;
 
   /** Largest flux() of the walls on this rank. */

@@ -35,9 +35,9 @@ MPMFlowRegions::Meets MPMFlowRegions::meets(int wall, const double *x) const
   return distance_from(walls[wall], before, far) >= 0.0 ? COMES : INSIDE;
 }
 
-/** Warns of bodies that have come into walls or regions. Bodies touch nothing, so that a stone would go on
- *  through the floor unnoticed. Overlap at the start of a run is intended, also where water, and with it the
- *  cells in which overlap is seen, comes later. */
+/** Warns of bodies that have come into walls or regions. Bodies touch nothing, so that a stone
+ *  would go on through the floor unnoticed. Overlap at the start of a run is intended, also where
+ *  water, and with it the cells in which overlap is seen, comes later. */
 void MPMFlowRegions::warn_of_bodies()
 {
   constexpr int FACES = 6;
@@ -107,8 +107,8 @@ bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
   return false;
 }
 
-/** A corner of a wall that ends in the cell is as thin there, but lets nothing through: next to the cell, the
- *  wall is thicker than a cell. */
+/** A corner of a wall that ends in the cell is as thin there, but lets nothing through: next to the
+ *  cell, the wall is thicker than a cell. */
 bool MPMFlowRegions::is_corner(const MPMFlowLattice::Cell &cell, int axis) const
 {
   // cells up to which a corner of 60 degrees gets that thick, wherever it ends in the cell
@@ -131,8 +131,8 @@ bool MPMFlowRegions::is_corner(const MPMFlowLattice::Cell &cell, int axis) const
   return false;
 }
 
-/** Less than a spacing between two regions that face each other: a cell has only a part of one wall, so
- *  that forces on the other wall would count as forces on this one. */
+/** Less than a spacing between two regions that face each other: a cell has only a part of one
+ *  wall, so that forces on the other wall would count as forces on this one. */
 bool MPMFlowRegions::is_gap(const MPMFlowLattice::Cell &cell) const
 {
   constexpr double AGAINST = -0.5, middle[3] = {0.5, 0.5, 0.5};

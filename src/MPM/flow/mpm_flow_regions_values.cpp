@@ -6,7 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Values of cells and faces next to regions: filled shares, velocities of closed faces, and pressures of closed cells
+// Values of cells and faces next to regions: filled shares, velocities of closed faces, and
+// pressures of closed cells
 
 #include "flow/mpm_flow_regions.h"
 
@@ -19,9 +20,9 @@ using namespace LAMMPS_NS;
 
 // open share of the surroundings of a cell below which the cells around count, too
 static constexpr double LITTLE_VOLUME = 0.3;
-// least cosine between a floor and the surface; open share from which on a cell is whole; a cell has a
-// surface with a share of water above SURFACE and below 1 - SURFACE; least slope of shares that shows
-// the direction of the surface, and what keeps its equations regular
+// least cosine between a floor and the surface; open share from which on a cell is whole; a cell
+// has a surface with a share of water above SURFACE and below 1 - SURFACE; least slope of shares
+// that shows the direction of the surface, and what keeps its equations regular
 static constexpr double FLOOR = 0.7, WHOLE = 0.75, SURFACE = 0.1, LEAST_SLOPE = 0.3,
                         REGULAR = 1.0e-3;
 // layers of closed cells that points near walls reach
@@ -58,9 +59,9 @@ void MPMFlowRegions::normalize(std::vector<double> &share) const
 }
 
 /* ----------------------------------------------------------------------
-   Only a part of the surroundings of a cell next to a wall is open, above a floor the upper part. Their
-   filled share therefore does not show how deep the middle of the cell is below a surface. Where whole cells
-   around have a surface, it is continued as a plane.
+   Only a part of the surroundings of a cell next to a wall is open, above a floor the upper part.
+   Their filled share therefore does not show how deep the middle of the cell is below a surface.
+   Where whole cells around have a surface, it is continued as a plane.
 ------------------------------------------------------------------------- */
 
 void MPMFlowRegions::continue_surface(std::vector<double> &share) const
@@ -165,7 +166,8 @@ void MPMFlowRegions::hold(std::vector<double> &velocity, bool moving) const
 }
 
 /* ----------------------------------------------------------------------
-   Owners of wet cells have the slopes of psi away from closed neighbors; the next layer has the same slopes.
+   Owners of wet cells have the slopes of psi away from closed neighbors; the next layer has the
+   same slopes.
 ------------------------------------------------------------------------- */
 
 void MPMFlowRegions::extrapolate(std::vector<double> &psi, const std::vector<double> &wet) const

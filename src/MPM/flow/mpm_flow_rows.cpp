@@ -72,8 +72,8 @@ void MPMFlowRows::arrange()
     }
 }
 
-/** Two ranks list the cells that they share in the same order. After one message, both know which of these
- *  cells the other one needs. */
+/** Two ranks list the cells that they share in the same order. After one message, both know which
+ *  of these cells the other one needs. */
 void MPMFlowRows::find_peers()
 {
   const auto &halo = cells.halo_of_cells();

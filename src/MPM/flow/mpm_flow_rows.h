@@ -15,13 +15,13 @@
 
 namespace LAMMPS_NS {
 
-/** Cells with equations in a list without gaps, for solves: those of this rank, and their neighbors on other ranks. Vectors on
- *  the lattice have all cells of its blocks, some of them on several ranks. Here each rank has its own cells, and gets only
- *  the values of others that it needs.
+/** Cells with equations in a list without gaps, for solves: those of this rank, and their neighbors
+ *  on other ranks. Vectors on the lattice have all cells of its blocks, some of them on several
+ *  ranks. Here each rank has its own cells, and gets only the values of others that it needs.
  *
- *  A list has two halves, cells with an even sum of indices (EVEN), whose neighbors have an odd one (ODD). If a period has an
- *  odd number of cells, the last ones are EVEN, and some of their neighbors are EVEN, too. ODD cells never have ODD
- *  neighbors. */
+ *  A list has two halves, cells with an even sum of indices (EVEN), whose neighbors have an odd one
+ *  (ODD). If a period has an odd number of cells, the last ones are EVEN, and some of their
+ *  neighbors are EVEN, too. ODD cells never have ODD neighbors. */
 class MPMFlowRows {
  public:
   enum Half { EVEN, ODD };
@@ -32,7 +32,8 @@ class MPMFlowRows {
   MPMFlowRows(class LAMMPS *lmp, const MPMFlowLattice &cells) : lmp(lmp), cells(cells) {}
 
   void begin();    ///< removes all cells
-  /** Adds a cell that this rank owns; near: [2 dim] numbers of neighbors with equations, -1: none. */
+  /** Adds a cell that this rank owns; near: [2 dim] numbers of neighbors with equations, -1:
+   *  none. */
   void add(int number, const int *near);
   /** Puts the cells in order when all have been added. Collective. */
   void arrange();
@@ -47,11 +48,13 @@ class MPMFlowRows {
   /** Place of a neighbor of a cell at a place. */
   int near(int place, int side) const { return places[(std::size_t) place * nsides + side]; }
 
-  /** Get values of a half from other ranks: fetch() begins this, wait() waits until all that has begun is complete. */
+  /** Get values of a half from other ranks: fetch() begins this, wait() waits until all that has
+   *  begun is complete. */
   void fetch(Half half);
   void wait();
-  /** sum: [place in the half] sums of factor [place][side] times values of neighbors. Values of the other half are fetched from
-   *  other ranks; values of the same half, which count at odd periods, must be present. Collective. */
+  /** sum: [place in the half] sums of factor [place][side] times values of neighbors. Values of the
+   *  other half are fetched from other ranks; values of the same half, which count at odd periods,
+   *  must be present. Collective. */
   void sum(Half half, const std::vector<double> &factor, double *sum);
   /** The same sums for all cells; all values of other ranks are fetched. Collective. */
   void sum_all(const std::vector<double> &factor, double *sum);

@@ -16,7 +16,7 @@
 #include "flow/mpm_flow_stencil.h"
 #include "force.h"
 #include "lattice/staggered.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "modify.h"

@@ -26,12 +26,14 @@ struct BatchKernels;
 namespace LAMMPS_NS {
 class FixMPMMaterial;
 
-/** Elastic solids in an incompressible flow: points that move with the velocity of the flow, and whose law adds a stress.
+/** Elastic solids in an incompressible flow: points that move with the velocity of the flow, and
+ *  whose law adds a stress.
  *
- *  The pressure of the flow keeps their volume, so that their law only gives a deviator. Its forces act on the faces of the
- *  staggered lattice, and the strain follows from the same gradients of the velocity. These are constant in boxes of one
- *  spacing. Points have a width, so that nothing jumps when they pass from one box to the next (S.G. Bardenhagen, E.M. Kober,
- *  Comput. Model. Eng. Sci. 5 (2004) 477). */
+ *  The pressure of the flow keeps their volume, so that their law only gives a deviator. Its forces
+ *  act on the faces of the staggered lattice, and the strain follows from the same gradients of the
+ *  velocity. These are constant in boxes of one spacing. Points have a width, so that nothing jumps
+ *  when they pass from one box to the next (S.G. Bardenhagen, E.M. Kober, Comput. Model. Eng. Sci.
+ *  5 (2004) 477). */
 class MPMFlowSolids : protected Pointers {
  public:
   /** bits: of the groups of their points. */
@@ -49,11 +51,13 @@ class MPMFlowSolids : protected Pointers {
 
   /** Forces of the present stress at faces: [cell][dim] in force units. */
   void give_forces(std::vector<double> &forces);
-  /** Updates deformation and stress of the points to the end of a step of duration dt with these velocities [cell][dim]; to
-   *  be called before the points move. Stops with an error if a point is turned inside out. */
+  /** Updates deformation and stress of the points to the end of a step of duration dt with these
+   *  velocities [cell][dim]; to be called before the points move. Stops with an error if a point is
+   *  turned inside out. */
   void deform(const double *velocity, double dt, double viscosity);
-  /** Replaces the pressure in the stress [6] of a law by the pressure p of the flow. In 2d, where the solid is held at
-   *  constant thickness, the pressure of the flow is minus the mean of the two normal stresses in the plane. */
+  /** Replaces the pressure in the stress [6] of a law by the pressure p of the flow. In 2d, where
+   *  the solid is held at constant thickness, the pressure of the flow is minus the mean of the two
+   *  normal stresses in the plane. */
   void set_pressure(double *stress, double p) const
   {
     const int dim = cells.lattice.dim;
@@ -62,11 +66,13 @@ class MPMFlowSolids : protected Pointers {
     for (int d = 0; d < 3; d++) stress[d] -= mean + p;
   }
 
-  /** Largest stable time step for shear waves of the shortest wave length, in which neighboring nodes move against each other,
-   *  over sqrt(2), to leave room for a viscosity. tag: of the point that limits it on this rank. */
+  /** Largest stable time step for shear waves of the shortest wave length, in which neighboring
+   *  nodes move against each other, over sqrt(2), to leave room for a viscosity. tag: of the point
+   *  that limits it on this rank. */
   double stable_dt(tagint &tag);
 
-  /** Calls the function with the present state of the points of a group, see visit_point_batches(). */
+  /** Calls the function with the present state of the points of a group, see
+   *  visit_point_batches(). */
   void visit_batches(
       int groupbit,
       const std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)> &);
@@ -90,7 +96,8 @@ class MPMFlowSolids : protected Pointers {
   template <int dim> void give(std::vector<double> &forces);
   template <int dim> void strain(const double *velocity, double dt, double viscosity);
   template <int dim> void find_shares();
-  /** Fluid around a point: its share in boxes of each kind, the largest of these shares, and the normal n of the solid. */
+  /** Fluid around a point: its share in boxes of each kind, the largest of these shares, and the
+   *  normal n of the solid. */
   struct Interface {
     double fluid[4], most, n[3];
   };
@@ -100,7 +107,8 @@ class MPMFlowSolids : protected Pointers {
   template <int dim>
   void leave_to_fluid(int i, const Interface &, double stiffness, double viscosity, double dt,
                       double A[3][3]) const;
-  /** Function of the number of a cell: share of solid in the box of gradients along d of velocities along c. */
+  /** Function of the number of a cell: share of solid in the box of gradients along d of velocities
+   *  along c. */
   template <int dim> auto weight_of(int c, int d) const
   {
     return [this, kind = c == d ? 0 : c + d](int64_t number) {

@@ -17,14 +17,15 @@
 
 namespace LAMMPS_NS {
 
-/** The faces and cells that a place between the middles of cells reaches, see lattice/staggered.h. They depend only on the
- *  base of the place. */
+/** The faces and cells that a place between the middles of cells reaches, see lattice/staggered.h.
+ *  They depend only on the base of the place. */
 template <int dim> struct MPMFlowStencil {
   static constexpr int ROWS = 2 * (dim - 1);    ///< rows of three faces along c, normal to c
   static constexpr int CELLS = 1 << dim;
 
   const int *slots;
-  // for indices base - 1 to base + 2 along each axis: terms of the neighbor block, and of the number in the block
+  // for indices base - 1 to base + 2 along each axis: terms of the neighbor block, and of the
+  // number in the block
   int block[3][4], inside[3][4];
 
   MPMFlowStencil() = default;
@@ -57,7 +58,8 @@ template <int dim> struct MPMFlowStencil {
     return (int64_t) slots[to] * MPM_NS::NODES_PER_BLOCK + n;
   }
   int64_t number(const int k[3]) const { return number(k[0], k[1], dim == 3 ? k[2] : 0); }
-  /** Face k of a row of faces normal to c, along c; row: k_d + 2 k_e with the axes d and e after c. */
+  /** Face k of a row of faces normal to c, along c; row: k_d + 2 k_e with the axes d and e after
+   *  c. */
   template <int c> int64_t face(int row, int k) const
   {
     const int kd = row % 2, ke = row / 2;
@@ -72,8 +74,8 @@ template <int dim> struct MPMFlowStencil {
   }
 };
 
-/** Calls f(number, k) for all cells, with indices base + k, whose middle or lower faces a place with this base reaches.
- *  None of these has the last index along two axes. */
+/** Calls f(number, k) for all cells, with indices base + k, whose middle or lower faces a place
+ *  with this base reaches. None of these has the last index along two axes. */
 template <int dim, class F> inline void visit(const MPMFlowStencil<dim> &stencil, const F &f)
 {
   int k[3] = {0, 0, 0};
@@ -92,8 +94,9 @@ template <int dim, class F> inline void for_each_axis(const F &f)
   if constexpr (dim == 3) f(std::integral_constant<int, 2>());
 }
 
-/** Cache of objects T that places with the same base have in common. Bases of points that are neighbors in memory differ by
- *  one at most, or hardly more: so there is one T for each parity of the indices. */
+/** Cache of objects T that places with the same base have in common. Bases of points that are
+ *  neighbors in memory differ by one at most, or hardly more: so there is one T for each parity of
+ *  the indices. */
 template <int dim, class T> class MPMFlowNear {
  public:
   MPMFlowNear()
@@ -101,7 +104,8 @@ template <int dim, class T> class MPMFlowNear {
     for (auto &one : entries) one.base[0] = INT_MIN;
   }
 
-  /** The T of a base. If it is not there, make(T &) is called for it, after leave(T &) for the one that it replaces, if any. */
+  /** The T of a base. If it is not there, make(T &) is called for it, after leave(T &) for the one
+   *  that it replaces, if any. */
   template <class Leave, class Make> T &at(const int base[3], const Leave &leave, const Make &make)
   {
     int k = 0;

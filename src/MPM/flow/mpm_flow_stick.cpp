@@ -15,15 +15,15 @@
 
 using namespace LAMMPS_NS;
 
-// distance up to which walls are looked at; least open share of an edge, and shortest distance from a face to a wall;
-// the same for velocities continued into walls [spacings]
+// distance up to which walls are looked at; least open share of an edge, and shortest distance from
+// a face to a wall; the same for velocities continued into walls [spacings]
 static constexpr double FAR = 2.5, NEAREST = 0.02, NEAREST_HELD = 0.25;
 // places along an axis at which open shares are found
 static constexpr int PLACES = 8;
 // open share of a face whose middle is in a wall that shows a thin wall
 static constexpr double MOST_BEHIND = 0.6;
-// open share below which a face has the velocity of the wall: the pressure of cells behind such openings would
-// hardly be determined, and take thousands of iterations
+// open share below which a face has the velocity of the wall: the pressure of cells behind such
+// openings would hardly be determined, and take thousands of iterations
 static constexpr double LEAST_OPEN = 0.1;
 // least open share of a cell
 static constexpr double LEAST_VOLUME = 0.01;
@@ -35,8 +35,9 @@ static constexpr double NO_AREA = 0.2, DRAG = 3.0;
 static constexpr int LAYERS = 2;
 
 namespace {
-/** Share of a segment of length one, and of a square or box with such sides, in which a linear function with these slopes is
- *  positive. middle: its value there. Exact along the steepest axis. */
+/** Share of a segment of length one, and of a square or box with such sides, in which a linear
+ *  function with these slopes is positive. middle: its value there. Exact along the steepest
+ *  axis. */
 double positive(double middle, double slope)
 {
   const double most = middle + 0.5 * std::fabs(slope), least = middle - 0.5 * std::fabs(slope);
@@ -96,7 +97,8 @@ void MPMFlowStick::find(bool again)
   }
 }
 
-/** Wall next to a place in a cell, as a plane: distance from it, and slopes of this distance [spacings]. */
+/** Wall next to a place in a cell, as a plane: distance from it, and slopes of this distance
+ *  [spacings]. */
 double MPMFlowStick::plane_at(int64_t cell, const double *offset, double *slope, int &wall) const
 {
   const double h = cells.lattice.h;
@@ -128,7 +130,8 @@ void MPMFlowStick::find_face(int64_t face, double open)
     masses[face] = 0.0;
     return;
   }
-  // of its surroundings, two spacings wide, shear takes up the forces; a part of them is right for velocities of points
+  // of its surroundings, two spacings wide, shear takes up the forces; a part of them is right for
+  // velocities of points
   masses[face] =
       most * 0.25 * (3.0 + positive(middle, 2.0 * slope[0], 2.0 * slope[1], 2.0 * slope[2]));
   drags[face] = DRAG * open * std::pow(std::max(0.0, 1.0 - least / NO_AREA), 4) / masses[face];

@@ -16,12 +16,13 @@
 namespace LAMMPS_NS {
 class MPMFlowRegions;
 
-/** Regions without slip: what is open of the faces, edges, and cells of viscous stresses, and velocities of walls there.
- *  Faces are numbered cell*dim + axis.
+/** Regions without slip: what is open of the faces, edges, and cells of viscous stresses, and
+ *  velocities of walls there. Faces are numbered cell*dim + axis.
  *
- *  Next to a wall, strains are means over the open part of cells and of boxes around edges, by what flows through their sides
- *  (Gauss). The middle of a face is in one side of these boxes for each axis along it: area() is the open share of that side.
- *  Forces are the transpose, so that a stress that is the same everywhere has none. */
+ *  Next to a wall, strains are means over the open part of cells and of boxes around edges, by what
+ *  flows through their sides (Gauss). The middle of a face is in one side of these boxes for each
+ *  axis along it: area() is the open share of that side. Forces are the transpose, so that a stress
+ *  that is the same everywhere has none. */
 class MPMFlowStick {
  public:
   MPMFlowStick(const MPMFlowLattice &cells, const MPMFlowRegions &regions) :
@@ -29,8 +30,8 @@ class MPMFlowStick {
   {
   }
 
-  /** Finds distances and velocities for the present state of regions, after MPMFlowRegions::find(). again: at the start of a
-   *  run, even if nothing moves. */
+  /** Finds distances and velocities for the present state of regions, after MPMFlowRegions::find().
+   *  again: at the start of a run, even if nothing moves. */
   void find(bool again);
   /** Is the middle of a face in a wall, or the face closed? */
   bool is_wall(int64_t face) const { return !(level[face] > 0.0); }
@@ -44,27 +45,34 @@ class MPMFlowStick {
   double area(int64_t face, int axis) const { return areas[face * cells.lattice.dim + axis]; }
   /** Open share of a cell. */
   double volume_fraction(int64_t cell) const { return volume_fractions[cell]; }
-  /** Open share of the box around the lower edge of a cell that is normal to two axes; pair: their sum less one. */
+  /** Open share of the box around the lower edge of a cell that is normal to two axes; pair: their
+   *  sum less one. */
   double volume_fraction_at_edge(int64_t cell, int pair) const
   {
     return edge_volume_fractions[cell * npair() + pair];
   }
-  /** Component at a face of the velocity of the wall that is nearest to such an edge; 0 far from walls. */
+  /** Component at a face of the velocity of the wall that is nearest to such an edge; 0 far from
+   *  walls. */
   double velocity_near(int64_t cell, int pair, int64_t face) const;
-  /** Component of the velocity of the nearest wall, extended rigidly to the middle of a face; 0 far from walls. */
+  /** Component of the velocity of the nearest wall, extended rigidly to the middle of a face; 0 far
+   *  from walls. */
   double velocity(int64_t face) const { return carried[face]; }
-  /** Effect of a wall between two faces, one spacing apart, on the difference of their velocities. */
+  /** Effect of a wall between two faces, one spacing apart, on the difference of their
+   *  velocities. */
   struct Gap {
-    /** Distance over which the velocity changes: from a face to the wall, or to the other face [spacings]. */
+    /** Distance over which the velocity changes: from a face to the wall, or to the other face
+     *  [spacings]. */
     double length;
-    /** To be added to the difference of velocities in the flow, in which those of faces in walls count as zero. */
+    /** To be added to the difference of velocities in the flow, in which those of faces in walls
+     *  count as zero. */
     double wall;
   };
   /** The difference is that of upper less lower. */
   Gap between(int64_t upper, int64_t lower) const;
 
-  /** Sets velocities [cell][dim] of faces in walls, for points next to walls: extrapolated linearly, with the velocity of the
-   *  wall at its surface. Of all cells before and afterwards. Collective. */
+  /** Sets velocities [cell][dim] of faces in walls, for points next to walls: extrapolated
+   *  linearly, with the velocity of the wall at its surface. Of all cells before and afterwards.
+   *  Collective. */
   void hold(std::vector<double> &velocity);
 
   double memory_usage() const;

@@ -69,7 +69,8 @@ double MPMFlowStress::at_edge(int64_t cell, int pair) const
   return viscosities ? viscosities->at_edge(cell, pair) : 1.0;
 }
 
-/** Lengths of wet cells along each axis: up to the middle between two of them, to a wall, or to the surface. */
+/** Lengths of wet cells along each axis: up to the middle between two of them, to a wall, or to the
+ *  surface. */
 void MPMFlowStress::find_lengths()
 {
   length.assign(cells.size() * dim, 0.0);
@@ -87,8 +88,8 @@ void MPMFlowStress::find_lengths()
 }
 
 /* ----------------------------------------------------------------------
-   Faces next to water, with their masses. Along its axis, a face reaches from middle to middle of its cells
-   or to the surface; along the other axes, it is as long as the cells on its sides.
+   Faces next to water, with their masses. Along its axis, a face reaches from middle to middle of
+   its cells or to the surface; along the other axes, it is as long as the cells on its sides.
 ------------------------------------------------------------------------- */
 
 void MPMFlowStress::find_faces()
@@ -149,8 +150,8 @@ void MPMFlowStress::find_faces()
 }
 
 /* ----------------------------------------------------------------------
-   Normal stresses are in wet cells, shear stresses where three of the four cells around are wet, except at
-   edges in walls.
+   Normal stresses are in wet cells, shear stresses where three of the four cells around are wet,
+   except at edges in walls.
 ------------------------------------------------------------------------- */
 
 void MPMFlowStress::find_stresses()
@@ -230,8 +231,8 @@ void MPMFlowStress::find_edge(Edge &edge, int pair)
         (k % 2 ? 1.0 : -1.0) * edge.area[k] * stick->velocity_near(cell, pair, edge.face[k]);
 }
 
-/** Numbers the stresses that exist. Vectors have only these, which are few on the lattice where a thread
- *  flows. */
+/** Numbers the stresses that exist. Vectors have only these, which are few on the lattice where a
+ *  thread flows. */
 void MPMFlowStress::find_rows()
 {
   unknowns.clear();
@@ -291,7 +292,8 @@ void MPMFlowStress::find_diagonal()
         inverse_diagonal[one.row + d] = 1.0 /
             (from_faces + one.volume * one.volume_fraction * (1.0 - 1.0 / dim) / (2.0 * number));
     }
-    // the inverse of diag(a + c) - c/dim, without the difference of numbers that are almost the same
+    // the inverse of diag(a + c) - c/dim, without the difference of numbers that are almost the
+    // same
     one.coupling = shares > 0.0 ? one.compliance / shares : 0.0;
   }
   for (const auto &edge : edges) {
@@ -303,7 +305,8 @@ void MPMFlowStress::find_diagonal()
 
 /* ---------------------------------------------------------------------- */
 
-/** Difference of two flows through areas; to the last digit that of the velocities where the areas are the same. */
+/** Difference of two flows through areas; to the last digit that of the velocities where the areas
+ *  are the same. */
 static double difference(const double *area, double upper, double lower)
 {
   return area[0] == area[1] ? area[0] * (upper - lower) : area[0] * upper - area[1] * lower;

@@ -18,34 +18,41 @@ namespace LAMMPS_NS {
 class MPMFlowStick;
 class MPMFlowViscosities;
 
-/** Viscosity of an incompressible fluid in an implicit step, together with the pressure (E. Larionov, C. Batty, R. Bridson, ACM
- *  Trans. Graph. 36 (2017) 101). Velocities u and stresses sigma at the end of a step dt satisfy
+/** Viscosity of an incompressible fluid in an implicit step, together with the pressure (E.
+ *  Larionov, C. Batty, R. Bridson, ACM Trans. Graph. 36 (2017) 101). Velocities u and stresses
+ *  sigma at the end of a step dt satisfy
  *
  *    density (u - u_1)/dt = div sigma,   dev sigma = 2 mu dev D(u),   div u = 0,
  *
- *  without traction at free surfaces. Pressure and viscous stress belong together: a surface without traction has the pressure
- *  2 mu dv_n/dx_n. With a viscous step that ignores it, a stretched sheet is too soft by a factor of two as soon as dt is
- *  more than thickness^2/nu.
+ *  without traction at free surfaces. Pressure and viscous stress belong together: a surface
+ *  without traction has the pressure 2 mu dv_n/dx_n. With a viscous step that ignores it, a
+ *  stretched sheet is too soft by a factor of two as soon as dt is more than thickness^2/nu.
  *
- *  The unknowns are S = dt sigma/(density h), a velocity. Its normal components, [c], are in the middle of wet cells, its shear
- *  components, [dim + pair], at the lower edges of cells. Velocities are eliminated, so that the system is symmetric and
- *  positive definite, and conserves momentum and angular momentum, however accurately it is solved:
+ *  The unknowns are S = dt sigma/(density h), a velocity. Its normal components, [c], are in the
+ *  middle of wet cells, its shear components, [dim + pair], at the lower edges of cells. Velocities
+ *  are eliminated, so that the system is symmetric and positive definite, and conserves momentum
+ *  and angular momentum, however accurately it is solved:
  *
  *    W C S + W E M^-1 E^T W S = W E u_1,
  *
- *  with differences E of velocities, their transpose E^T, which is minus the divergence of a stress, volumes W of cells and
- *  edges, masses M of faces (both up to the surface, in units of a cell), and the compliance C.
+ *  with differences E of velocities, their transpose E^T, which is minus the divergence of a
+ *  stress, volumes W of cells and edges, masses M of faces (both up to the surface, in units of a
+ *  cell), and the compliance C.
  *
- *  Walls of the box that stick drag the faces next to them: this adds a mass with the velocity of the wall to M. Next to regions
- *  that stick, strains are means over the open parts of cells and of boxes around edges, by what flows through their sides, and
- *  volumes and masses are those of open parts (MPMFlowStick). Faces that are nearly closed have the velocity of the region, and an
- *  inverse mass of zero. Fluid that enters a cell (MPMFlowPressure::sources) does so equally from all directions: it is no
- *  strain, and a third of it (in 2d one half) is subtracted from each normal component of E u_1.
+ *  Walls of the box that stick drag the faces next to them: this adds a mass with the velocity of
+ *  the wall to M. Next to regions that stick, strains are means over the open parts of cells and of
+ *  boxes around edges, by what flows through their sides, and volumes and masses are those of open
+ *  parts (MPMFlowStick). Faces that are nearly closed have the velocity of the region, and an
+ *  inverse mass of zero. Fluid that enters a cell (MPMFlowPressure::sources) does so equally from
+ *  all directions: it is no strain, and a third of it (in 2d one half) is subtracted from each
+ *  normal component of E u_1.
  *
- *  With several liquids, S has the density of psi, masses are those of the densities of faces, and the compliance is that of the
- *  viscosity in a cell or at an edge. Where this is small, the normal components of a cell are bound to each other much more than
- *  to their neighbors. The preconditioner then has the equations of these components as a whole, without their neighbors: with the
- *  diagonal alone, the pressure in thin liquids would converge by the ratio of viscosities. */
+ *  With several liquids, S has the density of psi, masses are those of the densities of faces, and
+ *  the compliance is that of the viscosity in a cell or at an edge. Where this is small, the normal
+ *  components of a cell are bound to each other much more than to their neighbors. The
+ *  preconditioner then has the equations of these components as a whole, without their neighbors:
+ *  with the diagonal alone, the pressure in thin liquids would converge by the ratio of
+ *  viscosities. */
 class MPMFlowStress : public MPM_NS::LinearSystem {
  public:
   MPMFlowStress(class LAMMPS *lmp, const MPMFlowLattice &cells, const MPMFlowPressure &water);
@@ -56,11 +63,14 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   const MPMFlowViscosities *viscosities = nullptr;
   /** See MPMFlowPressure; null: there is one density. */
   const std::vector<double> *inverse_density = nullptr;
-  /** [cell][dim] of all cells: zero for faces that keep their velocity, which no stress changes; null: there are none. */
+  /** [cell][dim] of all cells: zero for faces that keep their velocity, which no stress changes;
+   *  null: there are none. */
   const std::vector<double> *mobility = nullptr;
 
-  /** A step. number: dt nu/h^2, of several liquids with the largest viscosity and the density in psi. velocity: [cell][dim] of owned cells, afterwards of all cells; that of faces next to water is
-   *  used and changed. psi: [cell], dt/density times the mean pressure is added to it. Collective. */
+  /** A step. number: dt nu/h^2, of several liquids with the largest viscosity and the density in
+   *  psi. velocity: [cell][dim] of owned cells, afterwards of all cells; that of faces next to
+   *  water is used and changed. psi: [cell], dt/density times the mean pressure is added to it.
+   *  Collective. */
   MPM_NS::SolveReport step(double number, std::vector<double> &velocity, std::vector<double> &psi,
                            const MPM_NS::SolveGoal &);
 
@@ -103,7 +113,8 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   std::vector<Face> faces;
   std::vector<Normal> normals;
   std::vector<Edge> edges;
-  // place in stresses of each element of vectors: those of owned wet cells and edges, in ascending order
+  // place in stresses of each element of vectors: those of owned wet cells and edges, in ascending
+  // order
   std::vector<int64_t> unknowns;
   std::vector<double> carried;    // [stress] contribution of walls to W E u; empty without regions
   std::vector<double> volumes;    // [stress] without the part behind walls

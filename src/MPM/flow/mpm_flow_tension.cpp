@@ -37,8 +37,8 @@ MPMFlowTension::MPMFlowTension(const MPMFlowLattice &cells, const MPMFlowPressur
 {
 }
 
-/** Smoothed shares. Cells below the surface count as full: there, only unevenly spaced points would be seen,
- *  as if they were curvature. */
+/** Smoothed shares. Cells below the surface count as full: there, only unevenly spaced points would
+ *  be seen, as if they were curvature. */
 void MPMFlowTension::find_smooth(const std::vector<double> &share)
 {
   smooth.assign(cells.size(), 0.0);

@@ -20,10 +20,12 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// points are kept this far inside of walls, in spacings, so that rounding does not take them out of the box
+// points are kept this far inside of walls, in spacings, so that rounding does not take them out of
+// the box
 static constexpr double INSIDE = 1.0e-6;
-// largest change of the velocity of a point over a spacing, in spacings per step. Flows change by less, but
-// points that splash can get any gradient, which would give any velocity to faces up to 1.5 spacings away
+// largest change of the velocity of a point over a spacing, in spacings per step. Flows change by
+// less, but points that splash can get any gradient, which would give any velocity to faces up to
+// 1.5 spacings away
 static constexpr double STEEPEST = 0.75;
 
 namespace {
@@ -59,8 +61,8 @@ template <int dim> double unit_of(int e, double h)
   return e < dim * dim ? h : h * h;
 }
 
-/** Factor that limits velocity gradients G [distance/time over a spacing] to STEEPEST in a step of duration
- *  dt. */
+/** Factor that limits velocity gradients G [distance/time over a spacing] to STEEPEST in a step of
+ *  duration dt. */
 template <int dim> double limit_of(const double *G, double inv_h, double dt)
 {
   double most = 0.0;
@@ -208,7 +210,8 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
   }
 }
 
-/** Values of a field of velocities at the faces that places with the same base reach: [c][row][k]. */
+/** Values of a field of velocities at the faces that places with the same base reach:
+ *  [c][row][k]. */
 template <int dim> struct Faces {
   double at[dim][MPMFlowStencil<dim>::ROWS][3];
 
@@ -244,9 +247,10 @@ template <int dim> class FacesNear {
   MPMFlowNear<dim, Faces<dim>> near;
 };
 
-/** Velocities of several fields at a place and, if asked for, the gradients [flow_slopes(dim)] of the first
- *  one times the spacing (or its square). Components c are linear along each of the other axes between two
- *  layers of faces. bend: [dim] second derivatives along c, times the square of the spacing. */
+/** Velocities of several fields at a place and, if asked for, the gradients [flow_slopes(dim)] of
+ *  the first one times the spacing (or its square). Components c are linear along each of the other
+ *  axes between two layers of faces. bend: [dim] second derivatives along c, times the square of
+ *  the spacing. */
 template <int dim, int nfield, bool slopes>
 void interpolate(const Faces<dim> *fields, const StaggeredWeights &w, double (*v)[dim], double *G,
                  double *bend)
@@ -360,8 +364,9 @@ template <int dim> struct Thickness {
   }
 };
 
-/** Adds the viscous stress of an incompressible fluid, without its pressure. G: gradients of the velocity, in
- *  units of the lattice. thick: factors of the viscosity for normal and shear stresses. */
+/** Adds the viscous stress of an incompressible fluid, without its pressure. G: gradients of the
+ *  velocity, in units of the lattice. thick: factors of the viscosity for normal and shear
+ *  stresses. */
 template <int dim>
 void add_viscous(double viscosity, const double *thick, double h, const double *G, double *stress)
 {
@@ -392,8 +397,9 @@ template <int dim> struct Around {
   }
 };
 
-/** New velocity v of a point that keeps a share of the part of its velocity that cells do not see. now, old: velocities of the
- *  lattice at the point, at the end and at the start of the step. Adds to squares[2], see MPMFlowUpdate. */
+/** New velocity v of a point that keeps a share of the part of its velocity that cells do not see.
+ *  now, old: velocities of the lattice at the point, at the end and at the start of the step. Adds
+ *  to squares[2], see MPMFlowUpdate. */
 template <int dim>
 void keep_unseen(const MPMFlowUpdate &update, double mass, const double *now, const double *old,
                  const double *bend, double *v, double *squares)
@@ -408,8 +414,8 @@ void keep_unseen(const MPMFlowUpdate &update, double mass, const double *now, co
   }
 }
 
-/** Changes the velocity v of point i by its gradient along a shift. Adds the change of the kinetic energy and the work of forces
- *  to energy[2]. */
+/** Changes the velocity v of point i by its gradient along a shift. Adds the change of the kinetic
+ *  energy and the work of forces to energy[2]. */
 template <int dim>
 void change_by_shift(const MPMFlowPoints &points, int i, const double *shift, double *v,
                      double *energy)

@@ -21,10 +21,10 @@ class MPMFlowRegions;
 class MPMFlowSolids;
 class MPMFlowViscosities;
 
-/** Width of the rows of velocity gradients of points: dv_c/dx_d at dim c + d and, in 3d, d2v_c/dx_d dx_e at 9 +
- *  c, with the two other axes d and e. Across c, the functions of faces consist of hats along these axes only.
- *  With the products, points at rest give the lattice exactly the velocities that it gave them; without the
- *  products the lattice would lose some of them in each step. */
+/** Width of the rows of velocity gradients of points: dv_c/dx_d at dim c + d and, in 3d, d2v_c/dx_d
+ *  dx_e at 9 + c, with the two other axes d and e. Across c, the functions of faces consist of hats
+ *  along these axes only. With the products, points at rest give the lattice exactly the velocities
+ *  that it gave them; without the products the lattice would lose some of them in each step. */
 constexpr int flow_slopes(int dim)
 {
   return dim * dim + (dim == 3 ? 3 : 0);
@@ -45,44 +45,46 @@ struct MPMFlowUpdate {
   const double *old;     ///< [cell][dim] velocities before forces and pressure; null: no flip
   double reflect;        ///< share of the change by forces and pressure that is added a second time
   const double *more;    ///< [cell][dim] the change that is added; null: no reflection
-  /** [cell][dim] displacements of points in addition to the motion with their velocity; the velocities are
-   *  changed to fit the new places in the field of velocities. null: none. */
+  /** [cell][dim] displacements of points in addition to the motion with their velocity; the
+   *  velocities are changed to fit the new places in the field of velocities. null: none. */
   const double *shift = nullptr;
   const MPMFlowRegions *regions = nullptr;    ///< regions that points must not enter; null: none
   const MPMFlowInflow *inflow = nullptr;      ///< inlets that move the points in them; null: none
   /** Points that keep the stress of their material law and are not shifted; null: none. */
   const MPMFlowSolids *solids = nullptr;
-  /** Receives two mass-weighted sums over the points of this rank: of the squares of the velocities that cells
-   *  do not resolve, and of the squares of h^2 d2v_c/dx_c^2. In a smooth flow, the first is a small share of
-   *  the second. null: not wanted. Only with gradients and flip. */
+  /** Receives two mass-weighted sums over the points of this rank: of the squares of the velocities
+   *  that cells do not resolve, and of the squares of h^2 d2v_c/dx_c^2. In a smooth flow, the first
+   *  is a small share of the second. null: not wanted. Only with gradients and flip. */
   double *squares = nullptr;
-  /** Two sums over the points of this rank are added to it, both due to the shift: the change of the kinetic
-   *  energy, and the work of forces along the shift. */
+  /** Two sums over the points of this rank are added to it, both due to the shift: the change of
+   *  the kinetic energy, and the work of forces along the shift. */
   double *shift_energy = nullptr;
   /** [cell][dim] velocities that points move with; null: their new velocities. */
   const double *paths = nullptr;
   /** Viscosity of the stress that fluid points have in addition to the pressure. */
   double viscosity = 0.0;
-  /** Viscosities of cells and edges over this one, of several liquids; null: there is one. Points have those of the boxes in which
-   *  the gradients of velocities are constant, so that a shear stress is the same on both sides of an interface. */
+  /** Viscosities of cells and edges over this one, of several liquids; null: there is one. Points
+   *  have those of the boxes in which the gradients of velocities are constant, so that a shear
+   *  stress is the same on both sides of an interface. */
   const MPMFlowViscosities *viscosities = nullptr;
 };
 
-/** Transfer from points to cells. sums: [cell][3 dim + 1] with momentum, mass, and force at faces, and the
- *  volume at the middle of cells. A point gives a face normal to c the mass m N and the momentum m N (v_c +
- *  grad v_c . (x_i - x)), plus the part from the product of slopes. If the gradient comes from
- *  get_from_cells(), the momentum and angular momentum of the faces are those of the points; the angular
- *  momentum includes m g_ce D_e from the gradients of the points, with D_e = f (1 - f) h^2. */
+/** Transfer from points to cells. sums: [cell][3 dim + 1] with momentum, mass, and force at faces,
+ *  and the volume at the middle of cells. A point gives a face normal to c the mass m N and the
+ *  momentum m N (v_c + grad v_c . (x_i - x)), plus the part from the product of slopes. If the
+ *  gradient comes from get_from_cells(), the momentum and angular momentum of the faces are those
+ *  of the points; the angular momentum includes m g_ce D_e from the gradients of the points, with
+ *  D_e = f (1 - f) h^2. */
 void give_to_cells(const MPMFlowLattice &, const MPMFlowPoints &, std::vector<double> &sums);
 
-/** Volume that points give to faces, with the same weights as their mass; stored in the second half of sums
- *  [cell][2 dim]. */
+/** Volume that points give to faces, with the same weights as their mass; stored in the second half
+ *  of sums [cell][2 dim]. */
 void give_volumes_to_faces(const MPMFlowLattice &, const MPMFlowPoints &,
                            std::vector<double> &sums);
 
-/** Transfer from cells to points: velocities and gradients, and the motion of points through the field of
- *  velocities [cell][dim] by the midpoint rule. pressure: [cell], is stored in stress[i][0..2]. Returns false
- *  if the cells of any point must be found anew. */
+/** Transfer from cells to points: velocities and gradients, and the motion of points through the
+ *  field of velocities [cell][dim] by the midpoint rule. pressure: [cell], is stored in
+ *  stress[i][0..2]. Returns false if the cells of any point must be found anew. */
 bool get_from_cells(const MPMFlowLattice &, const MPMFlowPoints &, const double *velocity,
                     const MPMFlowUpdate &, const double *pressure, MPMRows stress);
 

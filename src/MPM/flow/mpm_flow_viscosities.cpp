@@ -19,12 +19,13 @@ using namespace MPM_NS;
 
 // least viscosity over the largest one: equations have to divide by it
 static constexpr double LEAST = 1.0e-9;
-// share that a box gets from points in the next half of its neighbors, along each axis, for those that have no points of their own
+// share that a box gets from points in the next half of its neighbors, along each axis, for those
+// that have no points of their own
 static constexpr double FROM_AFAR = 1.0e-8;
 
 namespace {
-/** Share of a point in the box along an axis that it is in and in the nearer one of the next, from first on. Lower ends of boxes are
- *  at whole numbers. */
+/** Share of a point in the box along an axis that it is in and in the nearer one of the next, from
+ *  first on. Lower ends of boxes are at whole numbers. */
 struct Overlap {
   int first;
   double share[2];

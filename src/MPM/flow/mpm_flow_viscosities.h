@@ -17,11 +17,12 @@ namespace LAMMPS_NS {
 
 /** Viscosities of a flow of several liquids, as shares of the largest one.
  *
- *  Stresses are in the middle of cells and at edges, and belong to boxes of one spacing around these places. A shear stress is the
- *  same on both sides of an interface that is normal to one of its two axes, and the shears add up: at edges, the viscosity is the
- *  harmonic mean over the volume of points in the box. A normal strain is the same on both sides, and the stresses add up: in
- *  cells, it is the arithmetic mean. Layers along the lattice lines thus have the velocities of theory, wherever their interface
- *  is in a cell. */
+ *  Stresses are in the middle of cells and at edges, and belong to boxes of one spacing around
+ *  these places. A shear stress is the same on both sides of an interface that is normal to one of
+ *  its two axes, and the shears add up: at edges, the viscosity is the harmonic mean over the
+ *  volume of points in the box. A normal strain is the same on both sides, and the stresses add up:
+ *  in cells, it is the arithmetic mean. Layers along the lattice lines thus have the velocities of
+ *  theory, wherever their interface is in a cell. */
 class MPMFlowViscosities {
  public:
   static constexpr int kinds(int dim)
@@ -31,7 +32,8 @@ class MPMFlowViscosities {
 
   /** viscosity: of points that are in none of the liquids. */
   MPMFlowViscosities(const MPMFlowLattice &cells, double viscosity);
-  /** Adds the liquid of the points with a bit of their group; a point in several has the last one. */
+  /** Adds the liquid of the points with a bit of their group; a point in several has the last
+   *  one. */
   void add(int bit, double viscosity);
 
   double largest() const { return most; }

@@ -20,7 +20,8 @@ static constexpr double NEAREST = 0.25;
 // Where a surface steps from one layer of cells to the next there are three,
 // and without the shear at that edge what is above it would slide freely
 static constexpr int LEAST_AT_EDGE = 3;
-// least height of what shear acts on, in spacings: half a cell, as where a surface is in the middle of a cell
+// least height of what shear acts on, in spacings: half a cell, as where a surface is in the middle
+// of a cell
 static constexpr double LEAST_HEIGHT = 0.5;
 
 void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
@@ -46,7 +47,8 @@ void MPMFlowViscosity::add(double factor, const std::vector<double> &u,
     const auto wet = [&](int offset) {
       return water.is_wet(at[offset]);
     };
-    // from the middle of a wet cell to a side of it, or to the surface before that; elsewhere half a spacing
+    // from the middle of a wet cell to a side of it, or to the surface before that; elsewhere half
+    // a spacing
     const auto reach = [&](int offset, int to) {
       return wet(offset) && !wet(to) ? std::max(0.0, water.distance(at[offset], at[to])) : 0.5;
     };

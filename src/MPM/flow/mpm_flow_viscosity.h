@@ -16,10 +16,10 @@
 namespace LAMMPS_NS {
 class MPMFlowViscosities;
 
-/** Stress of a viscous fluid on a staggered lattice, 2 mu times the rate of strain. Normal stresses are at the
- *  middle of cells, shear stresses at edges. The stress is zero in dry cells, and at edges that touch two or
- *  more of them, because a free surface has no traction. The volume that the stress acts on reaches up to the
- *  surface, as for the pressure. */
+/** Stress of a viscous fluid on a staggered lattice, 2 mu times the rate of strain. Normal stresses
+ *  are at the middle of cells, shear stresses at edges. The stress is zero in dry cells, and at
+ *  edges that touch two or more of them, because a free surface has no traction. The volume that
+ *  the stress acts on reaches up to the surface, as for the pressure. */
 class MPMFlowViscosity {
  public:
   MPMFlowViscosity(const MPMFlowLattice &cells, const MPMFlowPressure &water) :

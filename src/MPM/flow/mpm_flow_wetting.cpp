@@ -15,7 +15,8 @@
 
 using namespace LAMMPS_NS;
 
-// depth in regions up to which values are continued; longest way along a wall, in regions [spacings]
+// depth in regions up to which values are continued; longest way along a wall, in regions
+// [spacings]
 static constexpr double DEEPEST = 1.6, FARTHEST = 3.0;
 // least slope of values that gives a direction, per spacing
 static constexpr double LEAST_SLOPE = 1.0e-6;
@@ -54,7 +55,8 @@ void MPMFlowWetting::complete(std::vector<double> &values, bool find, bool skip_
 }
 
 /* ----------------------------------------------------------------------
-   Linear function between the middles of cells, at a place that is way from the middle of a cell [spacings].
+   Linear function between the middles of cells, at a place that is way from the middle of a cell
+   [spacings].
 ------------------------------------------------------------------------- */
 
 double MPMFlowWetting::value_at(const std::vector<double> &values, const MPMFlowLattice::Cell &cell,
@@ -134,8 +136,8 @@ double MPMFlowWetting::along_wall(const std::vector<double> &layer, const AtWall
 }
 
 /* ----------------------------------------------------------------------
-   The one layer behind walls of the box has the values at the wall, shifted by the cotangent, in steps of at
-   most a spacing.
+   The one layer behind walls of the box has the values at the wall, shifted by the cotangent, in
+   steps of at most a spacing.
 ------------------------------------------------------------------------- */
 
 void MPMFlowWetting::fill_walls(std::vector<double> &values, bool find)

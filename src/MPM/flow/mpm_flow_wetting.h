@@ -16,15 +16,15 @@
 namespace LAMMPS_NS {
 class MPMFlowRegions;
 
-/** Continues values at the middle of cells, such as smoothed shares of a fluid, into walls so that their
- *  contours meet the walls at a contact angle. The value at the depth d behind a wall with the normal m (into
- *  the flow) is the value at the height d above it, at a place shifted along the wall by 2 d cot(angle) towards
- *  more fluid. This maps planes that meet the wall at the angle to themselves, and curved surfaces to surfaces
- *  with the same curvature, as a mirror image does for 90 degrees. The direction along the wall is that of the
- *  slope of the values at the wall.
+/** Continues values at the middle of cells, such as smoothed shares of a fluid, into walls so that
+ *  their contours meet the walls at a contact angle. The value at the depth d behind a wall with
+ *  the normal m (into the flow) is the value at the height d above it, at a place shifted along the
+ *  wall by 2 d cot(angle) towards more fluid. This maps planes that meet the wall at the angle to
+ *  themselves, and curved surfaces to surfaces with the same curvature, as a mirror image does for
+ *  90 degrees. The direction along the wall is that of the slope of the values at the wall.
  *
- *  There is one layer of cells behind walls of the box. In regions, values are set in all cells next to the
- *  flow whose middle is inside. */
+ *  There is one layer of cells behind walls of the box. In regions, values are set in all cells
+ *  next to the flow whose middle is inside. */
 class MPMFlowWetting {
  public:
   /** Number of layers of cells that a rank needs around its own cells. */
@@ -38,9 +38,9 @@ class MPMFlowWetting {
 
   /** Updates the list of cells at walls and in regions to the present positions of these. */
   void find_walls();
-  /** Copies values [cell] from their owners to all ranks and continues them behind walls. find: take the
-   *  directions along walls from these values; otherwise use the directions found before. skip_zero: ignore
-   *  values that are zero. */
+  /** Copies values [cell] from their owners to all ranks and continues them behind walls. find:
+   *  take the directions along walls from these values; otherwise use the directions found before.
+   *  skip_zero: ignore values that are zero. */
   void complete(std::vector<double> &values, bool find, bool skip_zero = false);
   /** Is the middle of this cell inside a region? */
   bool is_behind(int64_t cell) const { return regions && behind[cell]; }

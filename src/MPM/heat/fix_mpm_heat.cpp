@@ -267,7 +267,8 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
 
 void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
-  // points strain at the end of a step with their temperatures at that time: an implicit step must know these before
+  // points strain at the end of a step with their temperatures at that time: an implicit step must
+  // know these before
   const bool is_implicit = !find_fixes<FixMPMImplicit>(lmp).empty();
   if (place == (is_implicit ? MPMPlan::BEFORE_SOLVE : MPMPlan::AFTER_SOLVE))
     plan.together("conduction of heat",
@@ -279,7 +280,8 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
 }
 
 /* ----------------------------------------------------------------------
-   entries of compute mpm/energy. The heat of points is a sum over points, separate from the heat that nodes were given
+   entries of compute mpm/energy. The heat of points is a sum over points, separate from the heat
+   that nodes were given
 ------------------------------------------------------------------------- */
 
 std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const

@@ -27,8 +27,9 @@ FixStyle(mpm/heat,FixMPMHeat);
 
 namespace LAMMPS_NS {
 
-/** Conduction of heat in points of conducting materials (with a part thermal), heat through faces of the box,
- *  surfaces of regions, and free surfaces, and heat exchange between bodies (fix mpm) in contact. */
+/** Conduction of heat in points of conducting materials (with a part thermal), heat through faces
+ *  of the box, surfaces of regions, and free surfaces, and heat exchange between bodies (fix mpm)
+ *  in contact. */
 class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
@@ -66,7 +67,8 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
   MPMConduction &of(const MPMField &field) const { return flow.in(field); }
 
   using Giver = MPMHeatFlow::Giver;
-  /** Counts heat [energy] that a source gave to nodes or points of this rank in this step, before conduction. */
+  /** Counts heat [energy] that a source gave to nodes or points of this rank in this step, before
+   *  conduction. */
   void book(Giver giver, double heat) { flow.totals.booked[giver] += heat; }
 
  private:

@@ -97,7 +97,7 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_stencil.h"
 #include "heat/mpm_heat_body.h"
-#include "material/mean_conduction.h"
+#include "material/heat.h"
 #include "math_extra.h"
 
 #include <algorithm>

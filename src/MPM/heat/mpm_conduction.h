@@ -33,16 +33,17 @@ struct MPMHeatTransfer {
 
   Kind kind = RELAX;
   int order = 1;    ///< XPIC: terms of the series for the inverse of the capacity matrix
-  /** RELAX: rate at which points take the temperature of nodes, in units of MPMConduction::crossing_rate(). */
+  /** RELAX: rate at which points take the temperature of nodes, in units of
+   *  MPMConduction::crossing_rate(). */
   double relax = 1.0;
 
   /** Do points keep gradients of the temperature? */
   bool has_slopes() const { return kind == RELAX || kind == AFFINE; }
 };
 
-/** Conduction of heat between the points of one field: temperatures of the nodes and their rates. The temperatures
- *  of all fields advance together (MPMSuperStep), as bodies may exchange heat. Equations, transfers, and stability: see
- *  the top of mpm_conduction.cpp. */
+/** Conduction of heat between the points of one field: temperatures of the nodes and their rates.
+ *  The temperatures of all fields advance together (MPMSuperStep), as bodies may exchange heat.
+ *  Equations, transfers, and stability: see the top of mpm_conduction.cpp. */
 class MPMConduction : protected Pointers {
  public:
   using Heats = MPMHeatFaces::Heats;
@@ -51,31 +52,35 @@ class MPMConduction : protected Pointers {
   MPMField &field;
   MPMHeatFaces faces;
   MPMNodeScalar scalar;    ///< the temperature
-  /** [nnodes] heat that nodes get from other physics in this step [energy], the same on all ranks that have the
-   *  node; empty: none. */
+  /** [nnodes] heat that nodes get from other physics in this step [energy], the same on all ranks
+   *  that have the node; empty: none. */
   std::vector<double> given;
   double duration = 0.0;    ///< of the coming conduction step [time]
 
   MPMConduction(class LAMMPS *, MPMField &, const MPMHeatTransfer &, const MPMHeatCondition *);
 
-  /** Start of a run. surfaces: heat also comes through surfaces other than faces of the box. warned_of_layers: set once a
-   *  warning about interfaces without mean conductivities has been printed. */
+  /** Start of a run. surfaces: heat also comes through surfaces other than faces of the box.
+   *  warned_of_layers: set once a warning about interfaces without mean conductivities has been
+   *  printed. */
   void init(double sigma, bool surfaces, bool &warned_of_layers);
 
-  /** First part of a step: temperatures of nodes. gradients: [n][dim] temperature gradients of points, null with
-   *  the transfers pic and xpic. starts: the first call of find_rates() will be for these temperatures, except those that
-   *  faces prescribe. Returns the bound of the rates of conduction of this rank [1/time]. */
+  /** First part of a step: temperatures of nodes. gradients: [n][dim] temperature gradients of
+   *  points, null with the transfers pic and xpic. starts: the first call of find_rates() will be
+   *  for these temperatures, except those that faces prescribe. Returns the bound of the rates of
+   *  conduction of this rank [1/time]. */
   double points_to_nodes(const MPMRows &gradients, bool starts);
-  /** points_to_nodes() in parts, for a body on several lattices (MPMHeatLevels). add_points(): sums over the points of this
-   *  rank. sum_nodes(): temperatures, after tied nodes have given their sums to their parents. end_nodes(): the bound, after
-   *  tied nodes have got their temperatures. */
+  /** points_to_nodes() in parts, for a body on several lattices (MPMHeatLevels). add_points(): sums
+   *  over the points of this rank. sum_nodes(): temperatures, after tied nodes have given their
+   *  sums to their parents. end_nodes(): the bound, after tied nodes have got their
+   *  temperatures. */
   void add_points(const MPMRows &gradients, bool starts);
   void sum_nodes() { scalar.sum_nodes(); }
   double end_nodes();
-  /** Shape functions for which points alone give no bound (shapes linear and bernstein): rate gets the sums of absolute
-   *  values of the rows of the matrix of rates, and when these have the contributions of all lattices, bound_by_rows()
-   *  returns the bound that follows [1/time]. Points conduct less where nodes with little capacity would exceed four times
-   *  the bound of nodes inside of a body. Collective. */
+  /** Shape functions for which points alone give no bound (shapes linear and bernstein): rate gets
+   *  the sums of absolute values of the rows of the matrix of rates, and when these have the
+   *  contributions of all lattices, bound_by_rows() returns the bound that follows [1/time]. Points
+   *  conduct less where nodes with little capacity would exceed four times the bound of nodes
+   *  inside of a body. Collective. */
   bool is_bounded_by_rows() const;
   enum Left { ALL, AS_SHARES };    // part of the conductivities that counts
   void add_rows(Left left = ALL);
@@ -84,17 +89,18 @@ class MPMConduction : protected Pointers {
   /** The bound of the rates of conduction on all ranks [1/time]. */
   void keep_rate(double conduction) { conducted = conduction; }
   double bound_of_rates() const { return conducted; }
-  /** Largest rate that surfaces at edges may have: the bound of rates; if nodes with little capacity get no heat through
-   *  surfaces, without their contribution to it. */
+  /** Largest rate that surfaces at edges may have: the bound of rates; if nodes with little
+   *  capacity get no heat through surfaces, without their contribution to it. */
   double rate_at_edges() const { return has_idle() ? std::min(conducted, usual_rate) : conducted; }
-  /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per volume, or null.
-   *  Adds the power of sources to power. To be followed by add_given(). */
+  /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per
+   *  volume, or null. Adds the power of sources to power. To be followed by add_given(). */
   void find_rates(const double *source, Heats &power);
   /** Adds the rates by heat from other physics (given). */
   void add_given();
   /** Temperatures are small changes: finds the changes of the rates by conduction alone. */
   void find_changes();
-  /** Calls the argument with the contribution of each point of this rank to the matrix of conduction, see MPMDiffusion::Term. */
+  /** Calls the argument with the contribution of each point of this rank to the matrix of
+   *  conduction, see MPMDiffusion::Term. */
   void each_term(const MPMDiffusion::Term &) const;
   /** Last part of a step: temperatures of points; returns the heat that they have got [energy]. */
   double nodes_to_points(const MPMRows &gradients);
@@ -107,12 +113,12 @@ class MPMConduction : protected Pointers {
   /** Includes the points of this rank in these maxima. */
   void add_motion(Motion &) const;
 
-  /** In a step without conduction: moves the heat in given to the points; returns the heat that the points of this rank
-   *  have got [energy]. Collective. */
+  /** In a step without conduction: moves the heat in given to the points; returns the heat that the
+   *  points of this rank have got [energy]. Collective. */
   double keep_given();
 
-  /** Adds heat of the points of this rank, [n] energy, to given at their nodes, by the weights of the shape functions.
-   *  To be called before points_to_nodes(). Collective. */
+  /** Adds heat of the points of this rank, [n] energy, to given at their nodes, by the weights of
+   *  the shape functions. To be called before points_to_nodes(). Collective. */
   void give(std::vector<double> &energy);
 
   /** [nnodes] capacities [energy/temperature] and volumes of nodes. */
@@ -121,19 +127,23 @@ class MPMConduction : protected Pointers {
   /** [nnodes] temperatures of nodes and their rates, for MPMSuperStep. */
   std::vector<double> &temperature = scalar.value, &rate = scalar.rate;
 
-  /** Bernstein polynomials: the box of a point (MPMCutDomains) can reach into a cell that the point is not in. */
+  /** Bernstein polynomials: the box of a point (MPMCutDomains) can reach into a cell that the point
+   *  is not in. */
   bool looks_beyond_points() const;
   void extend_topology();
-  /** Bernstein polynomials: idle nodes have so little capacity that nothing is conducted there, and no heat may come in. */
+  /** Bernstein polynomials: idle nodes have so little capacity that nothing is conducted there, and
+   *  no heat may come in. */
   bool has_idle() const { return !idle.empty(); }
   bool is_idle(int64_t node) const { return has_idle() && idle[node]; }
   /** Capacities of nodes for heat through faces: zero at idle nodes. */
   const std::vector<double> &face_capacity();
-  /** [nnodes][3] with Bernstein polynomials, of nodes next to faces: sums of V grad N over the parts of boxes of points, which
-   *  are integrals; around an axis of symmetry per unit of length around it. Empty with other functions. */
+  /** [nnodes][3] with Bernstein polynomials, of nodes next to faces: sums of V grad N over the
+   *  parts of boxes of points, which are integrals; around an axis of symmetry per unit of length
+   *  around it. Empty with other functions. */
   const std::vector<double> &face_gradient() const { return ends; }
 
-  /** Capacity of point i [energy/temperature], the weight of its temperature gradient; 0: it does not conduct. */
+  /** Capacity of point i [energy/temperature], the weight of its temperature gradient; 0: it does
+   *  not conduct. */
   double capacity_of(int i) const;
   /** Has the field a material that melts? The same on all ranks. */
   bool melts() const;
@@ -146,10 +156,11 @@ class MPMConduction : protected Pointers {
   double slowest_crossing = 0.0;    ///< lowest rate of the lattices of a body; 0: own
 
   double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
-  /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits it. Collective. */
+  /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits
+   *  it. Collective. */
   double greatest_rate_of_points(tagint &tag) const;
-  /** To be called when the points are known. If no point on any rank conducts and may_rest, the field becomes inactive.
-   *  Collective. */
+  /** To be called when the points are known. If no point on any rank conducts and may_rest, the
+   *  field becomes inactive. Collective. */
   void find_points(bool may_rest);
   /** Is there a material that conducts, whether or not the field has points of it now? */
   bool has_materials() const { return !thermals.empty(); }
@@ -181,7 +192,8 @@ class MPMConduction : protected Pointers {
   bool wants_volumes = false;
   // smallest diffusivity of a material, times the ratio of the least and the greatest capacity
   double slowest = 0.0;
-  // largest sum of (dN/dx)^2/N of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: no bound by points alone
+  // largest sum of (dN/dx)^2/N of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: no
+  // bound by points alone
   double steepest = 0.0;
   double conducted = 0.0;    // bound of rates in the last step [1/time]
   double change = 0.0;    // largest change of a temperature of points in the last conduction step
@@ -190,25 +202,29 @@ class MPMConduction : protected Pointers {
   std::vector<double> volumes;    // [n] of points in this step
   std::vector<char> warmed;       // [blocks] were nodes of the block given heat?
   std::vector<double> at_rest;    // [n][3] zero velocities of points that give heat
-  // [n] temperatures of nodes at the points at the start of the step, if the first rates are found for these temperatures;
-  // otherwise nodes keep them
+  // [n] temperatures of nodes at the points at the start of the step, if the first rates are found
+  // for these temperatures; otherwise nodes keep them
   std::vector<double> seen;
   enum { OF_NODES, TO_BE_SEEN, SEEN } at_start = OF_NODES;
-  // mean conductivities next to interfaces of materials that conduct differently; null: points have their own
+  // mean conductivities next to interfaces of materials that conduct differently; null: points have
+  // their own
   std::unique_ptr<MPMLayerMean> layers;
   double greatest = 0.0;    // largest of all conductivities, with layers
-  // has a warning been printed about interfaces without means? In the fix, as this object is made anew for each run
+  // has a warning been printed about interfaces without means? In the fix, as this object is made
+  // anew for each run
   bool *warned = nullptr;
   double fastest_point = 0.0;    // largest rate in this step, without the factor of the functions
-  // do rates of points follow from capacities and volumes alone; do nodes keep their temperatures of the start of the step?
+  // do rates of points follow from capacities and volumes alone; do nodes keep their temperatures
+  // of the start of the step?
   bool simple = false, keeps = false;
   struct Range {
     double low, high;
   };
-  // [n] in a step: range of the temperatures of nodes within a quarter of a node spacing of points of materials whose
-  // conductivity jumps; empty: there are none
+  // [n] in a step: range of the temperatures of nodes within a quarter of a node spacing of points
+  // of materials whose conductivity jumps; empty: there are none
   std::vector<Range> ranges;
-  // [n] share of their conductivity that is left to points, see bound_by_rows(), zero for points in parts; empty: all
+  // [n] share of their conductivity that is left to points, see bound_by_rows(), zero for points in
+  // parts; empty: all
   std::vector<double> shares;
   MPMCutDomains cuts;
   std::vector<double> ends;    // [nodes][3], see face_gradient()

@@ -35,8 +35,8 @@ static constexpr double LEAST_LEFT = 0.25;
 // distance from a side of cells, in cells, within which a point is on both sides
 static constexpr double ON_SIDE = 1.0e-9;
 
-/** Upper bound of the greatest eigenvalue of a symmetric matrix: the greatest sum of absolute values of a
- *  row. */
+/** Upper bound of the greatest eigenvalue of a symmetric matrix: the greatest sum of absolute
+ *  values of a row. */
 static double greatest_row(int dim, const double k[3][3])
 {
   double most = 0.0;
@@ -73,8 +73,8 @@ double MPMConduction::steepness(int i) const
   return greatest_row(dim, sum);
 }
 
-/** Bound of the rate of a point with this volume, or its largest diffusivity for functions that points do not
- *  bound. */
+/** Bound of the rate of a point with this volume, or its largest diffusivity for functions that
+ *  points do not bound. */
 double MPMConduction::bound(const Thermal &t, int i, double volume) const
 {
   Conduction buffer;
@@ -120,8 +120,8 @@ void MPMConduction::add_rows(Left left)
   }
 }
 
-/** Reduces the conduction of points at nodes with a much greater rate than inside of a body, which have next
- *  to no capacity. */
+/** Reduces the conduction of points at nodes with a much greater rate than inside of a body, which
+ *  have next to no capacity. */
 double MPMConduction::bound_by_rows(double greatest_of_rank)
 {
   const double usual = 4.0 * field.lattice.dim / (field.lattice.h * field.lattice.h);
@@ -190,8 +190,8 @@ double MPMConduction::bound_by_rows(double greatest_of_rank)
 
 /* ---------------------------------------------------------------------- */
 
-/** Greatest of all conductivities, including those that points have at present by their temperature or a
- *  random field. */
+/** Greatest of all conductivities, including those that points have at present by their temperature
+ *  or a random field. */
 double MPMConduction::greatest_possible() const
 {
   if (std::none_of(thermals.begin(), thermals.end(), [this](const Thermal &t) {
@@ -207,9 +207,9 @@ double MPMConduction::greatest_possible() const
   return all;
 }
 
-/** Points with domains have the bound of the last step and, before the first step, that inside of an
- *  undeformed body. Functions that points alone do not bound have the rate of light nodes, which appear as
- *  soon as a point comes to another cell. */
+/** Points with domains have the bound of the last step and, before the first step, that inside of
+ *  an undeformed body. Functions that points alone do not bound have the rate of light nodes, which
+ *  appear as soon as a point comes to another cell. */
 double MPMConduction::greatest_rate_of_points(tagint &tag) const
 {
   if (!active) return 0.0;

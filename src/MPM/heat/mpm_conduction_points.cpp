@@ -6,7 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Conductivities of points: in layers, at temperatures where they jump, and along axes that turn with the material
+// Conductivities of points: in layers, at temperatures where they jump, and along axes that turn
+// with the material
 
 #include "heat/mpm_conduction.h"
 
@@ -16,7 +17,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_stencil.h"
-#include "material/mean_conduction.h"
+#include "material/heat.h"
 #include "math_extra.h"
 
 #include <algorithm>
@@ -32,8 +33,8 @@ static constexpr double HALF_RANGE = 0.25;
 // ratio of conductivities for which means across interfaces matter little
 static constexpr double SAME = 2.0;
 
-/** Materials of different conductivity in one field get means next to their interfaces, if conductivities are
- *  numbers and functions are smooth. */
+/** Materials of different conductivity in one field get means next to their interfaces, if
+ *  conductivities are numbers and functions are smooth. */
 void MPMConduction::init_layers()
 {
   layers.reset();
@@ -95,8 +96,8 @@ const Conduction &MPMConduction::conduction_of(const Thermal &t, int i, Conducti
              mean_conduction(*t.fix->material, t.fix->history[i], ranges[i].low, ranges[i].high);
 }
 
-/** Finds the ranges of the means of conductivities that jump, from the temperatures of nodes. Raises the rate
- *  of the fastest point by these means. */
+/** Finds the ranges of the means of conductivities that jump, from the temperatures of nodes.
+ *  Raises the rate of the fastest point by these means. */
 void MPMConduction::find_ranges()
 {
   if (std::none_of(thermals.begin(), thermals.end(), [](const Thermal &t) {

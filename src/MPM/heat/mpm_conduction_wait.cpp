@@ -9,34 +9,34 @@
 /* ----------------------------------------------------------------------
    Conduction in one of several steps of the motion: keyword every.
 
-   With auto, conduction waits for another step while there are at most MOST_STEPS, and the time t since the
-   last conduction satisfies, with what was known at that time,
+   With auto, conduction waits for another step while there are at most MOST_STEPS, and the time t
+   since the last conduction satisfies, with what was known at that time,
 
      t <= SHARE t_1                    with the explicit limit t_1 of conduction within bodies
      t |v| <= WAY h                    for all points: bodies move and strain little on the lattice
      t |dT/dt| <= LUMP (Tmax - Tmin)   for all points, dT/dt by the last conduction: temperatures, and with them thermal
                                        stresses, do not change in large lumps
 
-   The first condition makes the error of Euler's method in time smaller than that of the lattice in space.
-   For a wave number k, Euler's method is too fast by the share t k^2 K/(2 rho c) < SHARE h^2 k^2/6 of the
-   rate, and the lattice is too slow by about h^2 k^2/12. Where exchange through a surface or a contact is
-   faster than conduction across a cell, it follows with the rate of conduction, as in long steps
-   (MPMHeatFaces::limit()).
+   The first condition makes the error of Euler's method in time smaller than that of the lattice in
+   space. For a wave number k, Euler's method is too fast by the share t k^2 K/(2 rho c) < SHARE h^2
+   k^2/6 of the rate, and the lattice is too slow by about h^2 k^2/12. Where exchange through a
+   surface or a contact is faster than conduction across a cell, it follows with the rate of
+   conduction, as in long steps (MPMHeatFaces::limit()).
 
-   Conduction is in each step if something varies from step to step, such as variables and regions that move,
-   if anything is implicit, or if others give heat in each step.
+   Conduction is in each step if something varies from step to step, such as variables and regions
+   that move, if anything is implicit, or if others give heat in each step.
 
-   Sums of ranks differ by round-off, which must not change the number of steps: NEARLY is the tolerance for
-   times that are equal in exact arithmetic.
+   Sums of ranks differ by round-off, which must not change the number of steps: NEARLY is the
+   tolerance for times that are equal in exact arithmetic.
 
-   Heat that friction gives to nodes in a step without conduction goes to points at once, because nodes do not
-   outlive the step:
+   Heat that friction gives to nodes in a step without conduction goes to points at once, because
+   nodes do not outlive the step:
 
      Q_p = sum_i Q_i m_p N_ip/m_i,
 
-   of which the sum over points is sum_i Q_i. With one capacity for each mass this is the change of the
-   temperature of nodes, Q_i/C_i, at the point, as after conduction. Only points next to nodes that got heat
-   are visited.
+   of which the sum over points is sum_i Q_i. With one capacity for each mass this is the change of
+   the temperature of nodes, Q_i/C_i, at the point, as after conduction. Only points next to nodes
+   that got heat are visited.
 ------------------------------------------------------------------------- */
 
 #include "atom.h"
@@ -67,7 +67,8 @@ static constexpr double NEARLY = 1.0 + 1.0e-6;
 static constexpr double ROUND_OFF = 1.0e-9;
 static constexpr double BIG = std::numeric_limits<double>::max();
 
-/** Counts one more step of fix mpm; true while it is not yet time for the conduction. Collective. */
+/** Counts one more step of fix mpm; true while it is not yet time for the conduction.
+ *  Collective. */
 bool MPMHeatFlow::wait()
 {
   const double dt = fields[0]->field.step_dt();

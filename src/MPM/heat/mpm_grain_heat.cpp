@@ -16,7 +16,8 @@
      final_integrate     fix heat/flow brings home what ghosts got; new temperatures of grains
      end_of_step         heat dt * heatflow of points: it waits
 
-   so that what leaves grains and what comes to points is the same number, also when the time step changes.
+   so that what leaves grains and what comes to points is the same number, also when the time step
+   changes.
 ------------------------------------------------------------------------- */
 
 #include "heat/mpm_grain_heat.h"

@@ -19,22 +19,25 @@ class FixMPMMaterial;
 class MPMConduction;
 class MPMField;
 
-/** Heat exchange between grains and material points through atom->temperature and atom->heatflow, which
- *  pair_style granular and fix heat/flow use. Grains receive their heat at the end of the step in which they
- *  touch. Points receive theirs from the nodes in the next step; until then the heat waits. */
+/** Heat exchange between grains and material points through atom->temperature and atom->heatflow,
+ *  which pair_style granular and fix heat/flow use. Grains receive their heat at the end of the
+ *  step in which they touch. Points receive theirs from the nodes in the next step; until then the
+ *  heat waits. */
 class MPMGrainHeat : protected Pointers {
  public:
-  /** waiting: [n][1] heat of points that the nodes have not received yet [energy], part of the state of points. */
+  /** waiting: [n][1] heat of points that the nodes have not received yet [energy], part of the
+   *  state of points. */
   MPMGrainHeat(class LAMMPS *lmp, const MPMRows &waiting) : Pointers(lmp), waiting(waiting) {}
 
-  /** Start of a run: stops with an error if something is missing, or if another fix changes the temperatures of
-   *  points. */
+  /** Start of a run: stops with an error if something is missing, or if another fix changes the
+   *  temperatures of points. */
   void init();
   /** Copies the temperatures of this rank's points to atom->temperature. */
   void show();
   /** Called when forces are known: notes the time step that the heat flow belongs to. */
   void note_step();
-  /** End of a step: adds the heat that points of this rank received to the waiting heat. Returns the sum. */
+  /** End of a step: adds the heat that points of this rank received to the waiting heat. Returns
+   *  the sum. */
   double take();
   /** Gives the waiting heat to the nodes of a field. Collective. */
   void give(MPMConduction &);

@@ -167,7 +167,7 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *
   const auto &lattice = field.lattice;
   const double full_area = lattice.cell_volume() / lattice.h;
   int first, index[3] = {base[0], base[1], base[2]};
-  double w[MOST], sum = 0.0, moment = 0.0;
+  double w[NodeLine::MOST], sum = 0.0, moment = 0.0;
   line.axis = axis;
   line.n = spreads() ? MPMStencil::quadratic(at, first, w)
                      : MPMStencil(field).weights(at, first, w);
@@ -338,8 +338,8 @@ bool MPMHeatBody::find_response(Line &line) const
 void MPMHeatBody::Line::add_term(double stiffness, const MPMDiffusion::Term &use) const
 {
   if (!(stiffness > 0.0)) return;
-  int64_t nodes[MOST];
-  double weights[MOST];
+  int64_t nodes[NodeLine::MOST];
+  double weights[NodeLine::MOST];
   int count = 0;
   for (int k = 0; k < n; k++)
     if (weight[k] > 0.0) {
@@ -351,18 +351,12 @@ void MPMHeatBody::Line::add_term(double stiffness, const MPMDiffusion::Term &use
 
 double MPMHeatBody::temperature(const Line &line) const
 {
-  double T = 0.0;
-  for (int k = 0; k < line.n; k++)
-    if (line.weight[k] > 0.0) T += line.weight[k] * conduction->temperature[line.node[k]];
-  return T;
+  return line.value(conduction->temperature.data());
 }
 
 double MPMHeatBody::drift(const Line &line) const
 {
-  double sum = 0.0;
-  for (int k = 0; k < line.n; k++)
-    if (line.weight[k] > 0.0) sum += line.weight[k] * conduction->rate[line.node[k]];
-  return sum;
+  return line.value(conduction->rate.data());
 }
 
 /* ---------------------------------------------------------------------- */
@@ -416,8 +410,7 @@ void MPMHeatBody::begin_stage()
 
 void MPMHeatBody::give(const Line &line, double power)
 {
-  for (int k = 0; k < line.n; k++)
-    if (line.weight[k] > 0.0) heat[line.node[k]] += power * line.weight[k];
+  line.spread(power, heat.data());
 }
 
 void MPMHeatBody::end_stage()

@@ -11,6 +11,7 @@
 
 #include "diffusion/mpm_diffusion_solver.h"
 #include "diffusion/mpm_node_profile.h"
+#include "field/node_line.h"
 #include "pointers.h"
 
 #include <array>
@@ -27,13 +28,8 @@ void activate_blocks_around(MPMField &, const int *block);
 /** Surface of a field as seen from its nodes, and the heat that comes in through it. */
 class MPMHeatBody : protected Pointers {
  public:
-  static constexpr int MOST = 4;
-
-  /** Nodes along an axis around a place on the surface. */
-  struct Line {
-    int axis, n;
-    int64_t node[MOST];
-    double weight[MOST];    ///< weights of the nodes, with the sum one
+  /** Nodes along an axis around a place on the surface; weights have the sum one. */
+  struct Line : NodeLine {
     double area;        ///< area of the surface that belongs to the line, projected along the axis
     double place;       ///< position of the surface on the line, in node spacings
     double response;    ///< response of the temperature there to heat: sum of weight^2/capacity

@@ -7,26 +7,28 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Where both bodies have the same share of the volume of a node along a line of nodes, their surfaces are
-   next to each other. Each has its own weights there (mpm_heat_body.cpp), which also show the distance of its
-   surface. The area is the smaller one of the two, so that a small body on a large one exchanges heat through
-   its own area.
+   Where both bodies have the same share of the volume of a node along a line of nodes, their
+   surfaces are next to each other. Each has its own weights there (mpm_heat_body.cpp), which also
+   show the distance of its surface. The area is the smaller one of the two, so that a small body on
+   a large one exchanges heat through its own area.
 
-   The exchange at such a place, with the temperatures T_a, T_b of both surfaces, their responses R to heat,
-   the rates D of their temperatures by all other heat, and the area A of which the line has the share s,
+   The exchange at such a place, with the temperatures T_a, T_b of both surfaces, their responses R
+   to heat, the rates D of their temperatures by all other heat, and the area A of which the line
+   has the share s,
 
      d(T_a - T_b)/dt = D_a - D_b - r (T_a - T_b),   r = h_c A (R_a + R_b)/s,
 
-   is stiff for a large h_c: then T_a - T_b follows D_a - D_b at once. Hence the difference of T_a - T_b from
-   (D_a - D_b)/r is made to decay with the rate l = min(r, limit) instead of r:
+   is stiff for a large h_c: then T_a - T_b follows D_a - D_b at once. Hence the difference of T_a -
+   T_b from (D_a - D_b)/r is made to decay with the rate l = min(r, limit) instead of r:
 
      P = (l/r) h_c A (T_a - T_b) + (1 - l/r) s (D_a - D_b)/(R_a + R_b)
 
-   is the power from a to b. It is h_c A (T_a - T_b) if r is below the limit, and in any case when nothing
-   changes, and tends to perfect contact with h_c. With the projections Pi to the differences (in the norm of
-   capacities, in which conduction is symmetric), and S = 1 - sum (1 - l/r) s Pi, the matrix of all rates is S
-   K - sum l s Pi = S (K - sum r s Pi'), similar to a symmetric one whose eigenvalues are not below those of
-   the conduction K less the limit: steps that are stable with the sum of both are stable whatever h_c is.
+   is the power from a to b. It is h_c A (T_a - T_b) if r is below the limit, and in any case when
+   nothing changes, and tends to perfect contact with h_c. With the projections Pi to the
+   differences (in the norm of capacities, in which conduction is symmetric), and S = 1 - sum (1 -
+   l/r) s Pi, the matrix of all rates is S K - sum l s Pi = S (K - sum r s Pi'), similar to a
+   symmetric one whose eigenvalues are not below those of the conduction K less the limit: steps
+   that are stable with the sum of both are stable whatever h_c is.
 ------------------------------------------------------------------------- */
 
 #include "heat/mpm_heat_contact.h"

@@ -29,11 +29,12 @@ struct MPMHeatPair {
   double now = 0.0;                        ///< conductance in this step
 };
 
-/** Heat exchange between two fields on one lattice where they touch: q = h_c (T_a - T_b) per area. */
+/** Heat exchange between two fields on one lattice where they touch: q = h_c (T_a - T_b) per
+ *  area. */
 class MPMHeatContact : protected Pointers {
  public:
-  /** The fields must have a fix mpm/contact, which gives all ranks the nodes of both fields where they may
-   *  meet. */
+  /** The fields must have a fix mpm/contact, which gives all ranks the nodes of both fields where
+   *  they may meet. */
   MPMHeatContact(class LAMMPS *, MPMHeatBody &a, MPMHeatBody &b, const MPMHeatPair &);
 
   /** Activates the blocks around those of a field, if it is one of the two. */
@@ -42,24 +43,24 @@ class MPMHeatContact : protected Pointers {
   void topology_changed() { listed = false; }
   /** Marks blocks in which the bodies may meet. */
   void mark_near();
-  /** Finds the places where the bodies touch, once their surfaces are known. thin: null, or receives all places
-   *  of this entry. Collective. */
+  /** Finds the places where the bodies touch, once their surfaces are known. thin: null, or
+   *  receives all places of this entry. Collective. */
   void find_contacts(MPMHeatThin *thin, int entry);
-  /** Updates the exchange for the capacities of nodes. Returns the largest rate of exchange on this rank
-   *  [1/time]. */
+  /** Updates the exchange for the capacities of nodes. Returns the largest rate of exchange on this
+   *  rank [1/time]. */
   double begin_step();
   /** Notes the lines of this contact for edges of both bodies. */
   void note_edges() const;
-  /** Limits the rate at which the difference of temperatures decays: to cap, the rate of the fastest other
-   *  change. At edges, the limit is the rate of conduction. */
+  /** Limits the rate at which the difference of temperatures decays: to cap, the rate of the
+   *  fastest other change. At edges, the limit is the rate of conduction. */
   void limit(double cap);
-  /** Gives heat to both bodies, whose rates must include all other heat already. Adds the power from a to b on
-   *  this rank. */
+  /** Gives heat to both bodies, whose rates must include all other heat already. Adds the power
+   *  from a to b on this rank. */
   void exchange(double &power) const;
   /** Is the exchange symmetric on this rank? */
   bool is_symmetric() const;
-  /** Passes on the terms that this rank adds to the matrix of conduction of a body, as if the other body had
-   *  the same temperature. */
+  /** Passes on the terms that this rank adds to the matrix of conduction of a body, as if the other
+   *  body had the same temperature. */
   void each_term(const MPMHeatBody &, const MPMDiffusion::Term &) const;
 
   double memory_usage() const;

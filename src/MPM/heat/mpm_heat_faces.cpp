@@ -105,7 +105,7 @@ void MPMHeatFaces::init(double sigma_of_units)
     for (int k = 0; k < REACH * SAMPLES; k++) {
       const double depth = (k + 0.5) / SAMPLES;
       int first;
-      double w[MOST];
+      double w[NodeLine::MOST];
       const int n = stencil.weights(face % 2 ? at - depth : at + depth, first, w);
       for (int j = 0; j < n; j++)
         if (first + j >= f.first && first + j < f.first + f.n)
@@ -189,6 +189,8 @@ void MPMHeatFaces::topology_changed()
         grid.node_index(block, n, index);
         if (index[face.axis] != face.first) continue;
         Line line = {};
+        line.axis = face.axis;
+        line.n = face.n;
         bool all = true;
         for (int k = 0; k < face.n; k++) {
           line.node[k] = grid.locate(index);
@@ -334,11 +336,8 @@ void MPMHeatFaces::solve(const Group &group, bool changes, const std::vector<dou
   for (std::size_t i = 0; i < n; i++) {
     const auto &[face, line] = lines[i];
     const auto &condition = conditions[face->face];
-    double T = 0.0;
-    for (int k = 0; k < face->n; k++) {
-      T += line->weight[k] * temperature[line->node[k]];
-      P[i] -= line->weight[k] * rate[line->node[k]];
-    }
+    const double T = line->value(temperature.data());
+    for (int k = 0; k < line->n; k++) P[i] -= line->weight[k] * rate[line->node[k]];
     if (condition.kind != MPMHeatCondition::TEMPERATURE)
       P[i] += softness(*face, *line) * std::min(1.0, STIFFEST * fastest / line->rate) * line->area *
           flux(changes, *face, *line, T);
@@ -383,8 +382,8 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
 {
   const Grid &grid = field.grid;
   const double cell = width(line.node[0], face.axis) * grid.lattice.cell_volume();
-  std::fill_n(line.weight, MOST, 0.0);
-  double part[MOST] = {}, most = 0.0, there = 0.0, full = 0.0;
+  std::fill_n(line.weight, NodeLine::MOST, 0.0);
+  double part[NodeLine::MOST] = {}, most = 0.0, there = 0.0, full = 0.0;
   for (int k = 0; k < face.n; k++) {
     const double V = volume[line.node[k]] / (cell * circle(line.node[k]));
     there += face.weight[k] * V;
@@ -432,7 +431,7 @@ bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line,
                                     const std::vector<double> &gradient,
                                     const std::function<double(int64_t)> &conducting) const
 {
-  double weight[MOST], sum = 0.0;
+  double weight[NodeLine::MOST], sum = 0.0;
   for (int k = 0; k < face.n; k++) {
     const double G = gradient[3 * line.node[k] + face.axis];
     weight[k] = std::max(0.0, face.face % 2 ? G : -G) * conducting(line.node[k]);
@@ -472,8 +471,7 @@ bool MPMHeatFaces::has_part_of_line(const std::function<bool(int64_t)> &taken) c
 void MPMHeatFaces::mark_near(std::vector<char> &near) const
 {
   for (const auto &face : faces)
-    for (const auto &line : face.lines)
-      for (int k = 0; k < face.n; k++) near[line.node[k] / NODES_PER_BLOCK] = 1;
+    for (const auto &line : face.lines) line.mark_blocks(near);
 }
 
 void MPMHeatFaces::begin_step(const std::vector<double> &capacity,
@@ -488,8 +486,7 @@ void MPMHeatFaces::begin_step(const std::vector<double> &capacity,
       line.joint = false;
       prepare(face, line, capacity, volume, body, ends);
       if (condition.kind <= MPMHeatCondition::FLUX) continue;
-      double T = 0.0;
-      for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
+      const double T = line.value(temperature.data());
       line.rate = line.area * line.response * condition.slope(T, sigma);
       rates[face.axis] = std::max(rates[face.axis], line.rate);
     }
@@ -539,8 +536,7 @@ template <class F> void MPMHeatFaces::visit_held(const F &f) const
 void MPMHeatFaces::hold(std::vector<double> &temperature, Heats &heat) const
 {
   visit_held([&](const Face &face, const Line &line) {
-    double T = 0.0;
-    for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
+    const double T = line.value(temperature.data());
     const double needed = (conditions[face.face].now[0] - T) / line.response;
     for (int k = 0; k < face.n; k++) temperature[line.node[k]] += needed * line.change[k];
     heat[face.face] += needed * line.owned;
@@ -559,8 +555,7 @@ bool MPMHeatFaces::linearize(const std::vector<double> &temperature)
   for (auto &face : faces)
     for (auto &line : face.lines) {
       if (!(line.area > 0.0)) continue;
-      double T = 0.0;
-      for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
+      const double T = line.value(temperature.data());
       line.slope = conditions[face.face].derivative(T, sigma);
       symmetric = symmetric && !is_limited(line);
     }
@@ -587,7 +582,7 @@ void MPMHeatFaces::each_term(double least, const MPMDiffusion::Term &use) const
       if (k == face.n || !field.grid.owns(line.node[k])) continue;
       const double stiffness = held ? STIFF * least / line.response
                                     : std::min(line.area * line.slope, fastest / line.response);
-      if (stiffness > 0.0) use(face.n, line.node, 1, line.weight, &stiffness);
+      if (stiffness > 0.0) use(line.n, line.node, 1, line.weight, &stiffness);
     }
   }
 }
@@ -601,21 +596,19 @@ void MPMHeatFaces::add(bool changes, const std::vector<double> &temperature,
       if (condition.kind == MPMHeatCondition::TEMPERATURE) continue;
       for (const auto &line : face.lines) {
         if (!(line.area > 0.0) || line.joint || is_limited(line) != limited) continue;
-        double T = 0.0;
-        for (int k = 0; k < face.n; k++) T += line.weight[k] * temperature[line.node[k]];
-        const double more = power_of(line, face.n, line.area * flux(changes, face, line, T));
+        const double T = line.value(temperature.data());
+        const double more = power_of(line, line.area * flux(changes, face, line, T));
         for (int k = 0; k < face.n; k++) rate[line.node[k]] += more * line.change[k];
         power[face.face] += more * line.owned;
       }
     }
   };
-  visit(false, [](const Line &, int, double P) {
+  visit(false, [](const Line &, double P) {
     return P;
   });
   // these lines have no nodes in common with others that are limited or held
-  visit(true, [&](const Line &line, int n, double P) {
-    double drift = 0.0;
-    for (int k = 0; k < n; k++) drift += line.weight[k] * rate[line.node[k]];
+  visit(true, [&](const Line &line, double P) {
+    const double drift = line.value(rate.data());
     const double slower = fastest / line.rate;
     return slower * P - (1.0 - slower) * drift / line.response;
   });
@@ -626,8 +619,7 @@ void MPMHeatFaces::add(bool changes, const std::vector<double> &temperature,
 void MPMHeatFaces::hold_rates(std::vector<double> &rate, Heats &power) const
 {
   visit_held([&](const Face &face, const Line &line) {
-    double drift = 0.0;
-    for (int k = 0; k < face.n; k++) drift += line.weight[k] * rate[line.node[k]];
+    const double drift = line.value(rate.data());
     const double needed = -drift / line.response;
     for (int k = 0; k < face.n; k++) rate[line.node[k]] += needed * line.change[k];
     power[face.face] += needed * line.owned;

@@ -11,6 +11,7 @@
 
 #include "declare/option.h"
 #include "diffusion/mpm_diffusion_solver.h"
+#include "field/node_line.h"
 #include "pointers.h"
 
 #include <cstdint>
@@ -118,11 +119,8 @@ class MPMHeatFaces : protected Pointers {
   double memory_usage() const;
 
  private:
-  static constexpr int MOST = 4;    // nodes of a line
-  struct Line {
-    int64_t node[MOST];
-    double weight
-        [MOST];    // weights in this step, with the sum one; all zero: no material touches the face here
+  // weights are those in this step, with the sum one; all zero: no material touches the face here
+  struct Line : NodeLine {
     double change[MOST];    // change of the temperature of a node by heat: weight over capacity
     double owned;           // sum of the weights of nodes that this rank owns
     double response;    // response of the temperature at the face to heat: sum of weight * change
@@ -134,8 +132,8 @@ class MPMHeatFaces : protected Pointers {
   struct Face {
     int face, axis, first, n;    // n nodes from the first one on
     double x;                    // position of the face
-    double weight[MOST];
-    double full[MOST];    // volume of the nodes if material fills the box, in cells
+    double weight[NodeLine::MOST];
+    double full[NodeLine::MOST];    // volume of the nodes if material fills the box, in cells
     std::vector<Line> lines;
   };
   struct Member {

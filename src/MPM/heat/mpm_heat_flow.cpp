@@ -74,7 +74,8 @@ void MPMHeatFlow::begin()
   std::fill(in_step.begin(), in_step.end(), 0.0);
 }
 
-/** Warns of materials that do not conduct and are thinner than the reach of nodes, at the first step, once. */
+/** Warns of materials that do not conduct and are thinner than the reach of nodes, at the first
+ *  step, once. */
 void MPMHeatFlow::look_for_leaks()
 {
   if (leaks_known) return;
@@ -170,7 +171,8 @@ int MPMHeatFlow::exchanges(const MPMConduction &conduction) const
    temperatures of nodes, and the number of stages that all fields need for their step
 ------------------------------------------------------------------------- */
 
-/** Finds lines of surfaces and contacts that cross others at edges, when all lines of the step are known. Collective. */
+/** Finds lines of surfaces and contacts that cross others at edges, when all lines of the step are
+ *  known. Collective. */
 void MPMHeatFlow::find_edges()
 {
   for (auto &body : bodies)
@@ -215,8 +217,8 @@ int MPMHeatFlow::count_stages()
     greatest = std::max(greatest, all[NRATE * k]);
   }
 
-  // a node can be at faces, in contacts with several bodies, and at a surface; nodes of different fields are separate. Exchange
-  // that needs no stage needs no limit
+  // a node can be at faces, in contacts with several bodies, and at a surface; nodes of different
+  // fields are separate. Exchange that needs no stage needs no limit
   static constexpr double BELOW_ONE_STEP = 0.95;
   int most_at_a_node = 0;
   for (auto &field : fields) most_at_a_node = std::max(most_at_a_node, exchanges(*field));
@@ -406,8 +408,8 @@ void MPMHeatFlow::conduct()
   warn_of_fronts();
 }
 
-/** Warns of long conductions with fronts: points take the heat of fusion at their end, which cools or warms the material beyond a front
- *  too much. */
+/** Warns of long conductions with fronts: points take the heat of fusion at their end, which cools
+ *  or warms the material beyond a front too much. */
 void MPMHeatFlow::warn_of_fronts()
 {
   static constexpr double LONG = 4.0;    // in explicit limits
@@ -481,7 +483,8 @@ void MPMHeatFlow::write_restart(FILE *fp)
   fwrite(power.data(), sizeof(double), power.size(), fp);
 }
 
-/** The power is that of the last conduction until the next one; with other surfaces or contacts, it belongs to the old ones. */
+/** The power is that of the last conduction until the next one; with other surfaces or contacts, it
+ *  belongs to the old ones. */
 void MPMHeatFlow::restart(const char *buf)
 {
   if (comm->me == 0) memcpy(&totals, buf, sizeof(Totals));

@@ -28,8 +28,9 @@
 namespace LAMMPS_NS {
 class MPMPlan;
 
-/** The flow of heat in all fields together: conduction in bodies, heat through faces, surfaces, and contacts, in explicit stages or in
- *  implicit steps, each for one or several steps of the motion. */
+/** The flow of heat in all fields together: conduction in bodies, heat through faces, surfaces, and
+ *  contacts, in explicit stages or in implicit steps, each for one or several steps of the
+ *  motion. */
 class MPMHeatFlow : protected Pointers, private MPMDiffusion {
  public:
   /** Other sources of heat for nodes and points. */
@@ -57,7 +58,8 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   void init_contacts();                                   ///< finds surfaces and contacts of fields
   void init_levels(const MPMPlan &);                      ///< finds bodies on several lattices
   void init_waits() { each_step = needs_each_step(); }    ///< says that all of these are known
-  /** Checks that radiation has temperatures in kelvins, and that variables exist. name: of the condition, for messages. */
+  /** Checks that radiation has temperatures in kelvins, and that variables exist. name: of the
+   *  condition, for messages. */
   void check_condition(MPMHeatCondition &, const std::string &name);
   void find_source(int index) { source_index = index; }    ///< variable of the source
   void clear_iterations() { std::fill_n(iterations, (int) NTOTAL, 0.0); }
@@ -67,7 +69,8 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
 
   // in a step
 
-  /** Counts one more step of fix mpm; true while it is not yet time for the conduction. Collective. */
+  /** Counts one more step of fix mpm; true while it is not yet time for the conduction.
+   *  Collective. */
   bool wait();
   /** Start of a step with conduction, before others give heat to nodes. Collective. */
   void begin();
@@ -104,8 +107,8 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   double fastest = 0.0;                  // bound of all rates, including exchange
   enum { STEPS, NEWTON, LINEAR, NTOTAL };
   double iterations[NTOTAL] = {};    // of this run
-  // heat of the last conduction, and power in a stage of it, this rank's share; entries: faces, sources, givers,
-  // surfaces, contacts
+  // heat of the last conduction, and power in a stage of it, this rank's share; entries: faces,
+  // sources, givers, surfaces, contacts
   Heats in_step, present;
   Heats power;
   double dt_last = 0.0;

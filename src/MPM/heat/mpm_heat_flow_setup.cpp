@@ -64,7 +64,8 @@ void MPMHeatFlow::check_condition(MPMHeatCondition &c, const std::string &name)
 }
 
 /* ----------------------------------------------------------------------
-   bodies on several lattices: conduction on the nodes of each lattice alone would be wrong at the rims
+   bodies on several lattices: conduction on the nodes of each lattice alone would be wrong at the
+   rims
 ------------------------------------------------------------------------- */
 
 void MPMHeatFlow::init_levels(const MPMPlan &plan)
@@ -240,7 +241,8 @@ void MPMHeatFlow::topology_changed(MPMField &field)
   for (auto &contact : contacts) contact->topology_changed();
 }
 
-/** Are nodes needed that no point reaches? Conduction alone needs none, but lines through surfaces do. */
+/** Are nodes needed that no point reaches? Conduction alone needs none, but lines through surfaces
+ *  do. */
 bool MPMHeatFlow::looks_beyond_points() const
 {
   return !bodies.empty() || std::any_of(fields.begin(), fields.end(), [](const auto &field) {

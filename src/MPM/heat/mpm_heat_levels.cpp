@@ -11,20 +11,20 @@
 
      N_j + sum_i w_ij N_i over tied nodes i of the next lattice,
 
-   which are not negative and have the sum one. What a point gives to a tied node (capacity, heat, flow,
-   volume) goes to the parents of the node with the weights w_ij, and temperatures of tied nodes follow by the
-   transpose: the matrix of conduction stays symmetric, and heat is kept. With the gradient g_p of a point,
-   the share of N_ip C_p [T_p + g_p . (x_i - x_p)] changes by w_ij N_ip C_p g_p . (x_j - x_i) at the place of
-   the parent. The sum of this over parents is zero, and temperatures that are linear in space are exact at
-   the rim.
+   which are not negative and have the sum one. What a point gives to a tied node (capacity, heat,
+   flow, volume) goes to the parents of the node with the weights w_ij, and temperatures of tied
+   nodes follow by the transpose: the matrix of conduction stays symmetric, and heat is kept. With
+   the gradient g_p of a point, the share of N_ip C_p [T_p + g_p . (x_i - x_p)] changes by w_ij N_ip
+   C_p g_p . (x_j - x_i) at the place of the parent. The sum of this over parents is zero, and
+   temperatures that are linear in space are exact at the rim.
 
-   Stability: by Cauchy and Schwarz, (sum_i w_ij grad N_i)^2/(sum_i w_ij N_i) is at most sum_i w_ij (grad
-   N_i)^2/N_i, and as the weights w_ij of all parents j have the sum one, the bound for the points of a
-   lattice by itself holds for them here. A row of absolute values (shape linear) is at most the same mean of
-   rows of parents.
+   Stability: by Cauchy and Schwarz, (sum_i w_ij grad N_i)^2/(sum_i w_ij N_i) is at most sum_i w_ij
+   (grad N_i)^2/N_i, and as the weights w_ij of all parents j have the sum one, the bound for the
+   points of a lattice by itself holds for them here. A row of absolute values (shape linear) is at
+   most the same mean of rows of parents.
 
-   Points of all lattices approach the temperature of their nodes at one rate, that of the largest cells,
-   because heat is kept in the sum over all points, and not for each lattice.
+   Points of all lattices approach the temperature of their nodes at one rate, that of the largest
+   cells, because heat is kept in the sum over all points, and not for each lattice.
 ------------------------------------------------------------------------- */
 
 #include "heat/mpm_heat_levels.h"
@@ -48,8 +48,8 @@ using namespace LAMMPS_NS;
 
 /* ----------------------------------------------------------------------
    Materials of different conductivity get means next to their interface where they share a field
-   (MPMLayerMean), but not where the rim between two lattices is at the interface. Does this occur on this
-   rank, with points of both in cells of the coarse lattice that touch?
+   (MPMLayerMean), but not where the rim between two lattices is at the interface. Does this occur
+   on this rank, with points of both in cells of the coarse lattice that touch?
 ------------------------------------------------------------------------- */
 
 static bool has_layers_at_rim(const MPMField &coarse, const MPMField &fine)
@@ -152,8 +152,8 @@ double MPMHeatLevels::points_to_nodes(const MPMRows &gradients, bool starts)
   return levels[0]->is_bounded_by_rows() ? bound_by_rows() : most;
 }
 
-/** Shape linear: bound by the rows of all lattices. Points next to tied nodes see the greatest row of the
- *  parents. */
+/** Shape linear: bound by the rows of all lattices. Points next to tied nodes see the greatest row
+ *  of the parents. */
 double MPMHeatLevels::bound_by_rows()
 {
   for (auto *level : levels) level->add_rows();
@@ -191,7 +191,8 @@ void MPMHeatLevels::rates_from_parents()
 }
 
 /* ----------------------------------------------------------------------
-   Sums of mpm_heat_body.cpp, with the points of all lattices that nodes of lines through a face reach
+   Sums of mpm_heat_body.cpp, with the points of all lattices that nodes of lines through a face
+   reach
 ------------------------------------------------------------------------- */
 
 void MPMHeatLevels::find_surface()

@@ -7,26 +7,28 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Surfaces are where a number at the nodes changes its sign between two nodes along an axis: the distance
-   from a region, or, for free surfaces, the depth in the body by the share of the volume of a node (inside of
-   the box) that the body fills. Lines of nodes through these places have the temperature T = sum_k w_k T_k of
-   the surface, and get the heat (mpm_heat_body.cpp).
+   Surfaces are where a number at the nodes changes its sign between two nodes along an axis: the
+   distance from a region, or, for free surfaces, the depth in the body by the share of the volume
+   of a node (inside of the box) that the body fills. Lines of nodes through these places have the
+   temperature T = sum_k w_k T_k of the surface, and get the heat (mpm_heat_body.cpp).
 
-   With the power P = f (T_out - T) of a line, f = area * coefficient, T would follow the temperature outside
-   with the rate r = f R/s, where R is its response to heat and s the share of the area that the line has. As
-   in mpm_heat_contact.cpp, this rate is limited to l: where r is larger,
+   With the power P = f (T_out - T) of a line, f = area * coefficient, T would follow the
+   temperature outside with the rate r = f R/s, where R is its response to heat and s the share of
+   the area that the line has. As in mpm_heat_contact.cpp, this rate is limited to l: where r is
+   larger,
 
      P = (l/r) f (T_out - T) - (1 - l/r) s D/R,   D: rate of T by all other heat,
 
    which is f (T_out - T) when nothing changes, and with r -> infinity prescribes the temperature.
 
-   D contains no heat of other lines of surfaces and contacts. Along a surface, lines of several axes through
-   it share the area, and together count as one. At edges, lines of surfaces with other normals have nodes in
-   common with a line, and its power in the steady state would depend on l, and thus on the time step: with
-   the heat D' of the other lines in D, P = F + (r/l - 1) D'/R. Equations for all lines that cross, as at
-   faces of the box (mpm_heat_faces.cpp), would couple all of an inclined surface. Instead, lines at edges get
-   so little area that r is at most the rate of conduction. They are then never limited, P = F, and in these
-   few cells the temperature of the surface is that of a place about a quarter of a cell beyond it.
+   D contains no heat of other lines of surfaces and contacts. Along a surface, lines of several
+   axes through it share the area, and together count as one. At edges, lines of surfaces with other
+   normals have nodes in common with a line, and its power in the steady state would depend on l,
+   and thus on the time step: with the heat D' of the other lines in D, P = F + (r/l - 1) D'/R.
+   Equations for all lines that cross, as at faces of the box (mpm_heat_faces.cpp), would couple all
+   of an inclined surface. Instead, lines at edges get so little area that r is at most the rate of
+   conduction. They are then never limited, P = F, and in these few cells the temperature of the
+   surface is that of a place about a quarter of a cell beyond it.
 ------------------------------------------------------------------------- */
 
 #include "heat/mpm_heat_surface.h"
@@ -93,7 +95,8 @@ bool MPMHeatSurfaces::near_wall(Wall &wall, const int *b) const
 
 void MPMHeatSurfaces::extend_topology()
 {
-  // also with one rank, for lines through the surface of a region next to the last nodes that points reach
+  // also with one rank, for lines through the surface of a region next to the last nodes that
+  // points reach
   const bool all = has_free && comm->nprocs > 1;
   if (!all && walls.empty()) return;
   const auto &blocks = body.field.grid.blocks;
@@ -149,8 +152,8 @@ void MPMHeatSurfaces::mark_near()
 }
 
 /* ----------------------------------------------------------------------
-   Calls f(axis, index, node, next) for pairs of neighbors, none of them a periodic image; next: -1 if it has
-   no block.
+   Calls f(axis, index, node, next) for pairs of neighbors, none of them a periodic image; next: -1
+   if it has no block.
 ------------------------------------------------------------------------- */
 
 template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
@@ -207,8 +210,8 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
   });
 }
 
-/** Adds a place or, where lines of the field share it, their places: heat goes to the end of the body, and
- *  not to a region some way off, see MPMConduction::find_ends(). */
+/** Adds a place or, where lines of the field share it, their places: heat goes to the end of the
+ *  body, and not to a region some way off, see MPMConduction::find_ends(). */
 void MPMHeatSurfaces::keep(const Place &whole, const int *index)
 {
   if (!body.spreads()) {
@@ -256,9 +259,9 @@ void MPMHeatSurfaces::find_filled()
 }
 
 /* ----------------------------------------------------------------------
-   The rank that counts a node of a neighbor has points of the neighbor there, and hence, in reach of this
-   body, also the node of this body. Other ranks may have only the node of this body, and get the share of the
-   neighbor from that rank.
+   The rank that counts a node of a neighbor has points of the neighbor there, and hence, in reach
+   of this body, also the node of this body. Other ranks may have only the node of this body, and
+   get the share of the neighbor from that rank.
 ------------------------------------------------------------------------- */
 
 void MPMHeatSurfaces::find_covered()

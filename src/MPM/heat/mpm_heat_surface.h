@@ -23,8 +23,8 @@ namespace LAMMPS_NS {
 class MPMHeatThin;
 class Region;
 
-/** Heat condition at the surface of a region or, without a region, at the free surface of bodies, which touches
- *  nothing. */
+/** Heat condition at the surface of a region or, without a region, at the free surface of bodies,
+ *  which touches nothing. */
 struct MPMHeatSurfaceCondition {
   std::string region;    ///< ID, empty: free surfaces
   MPMHeatCondition condition;
@@ -34,8 +34,8 @@ struct MPMHeatSurfaceCondition {
 class MPMHeatSurfaces : protected Pointers {
  public:
   MPMHeatBody &body;
-  /** Bodies that hide free surfaces of this one. Their fields have a fix mpm/contact with it, by which all
-   *  ranks know the nodes of both fields where they may meet. */
+  /** Bodies that hide free surfaces of this one. Their fields have a fix mpm/contact with it, by
+   *  which all ranks know the nodes of both fields where they may meet. */
   std::vector<const MPMHeatBody *> neighbors;
 
   using Conditions = std::vector<MPMHeatSurfaceCondition>;
@@ -48,21 +48,22 @@ class MPMHeatSurfaces : protected Pointers {
   void topology_changed();
   /** Marks blocks with surfaces. */
   void mark_near();
-  /** Finds the surfaces in this step, once those of this body and its neighbors are known. thin: null, or
-   *  receives all places, with the condition as entry. Collective. */
+  /** Finds the surfaces in this step, once those of this body and its neighbors are known. thin:
+   *  null, or receives all places, with the condition as entry. Collective. */
   void find_lines(MPMHeatThin *thin);
-  /** Updates the exchange for the capacities and temperatures of nodes. Returns the largest rate on this rank
-   *  at which temperatures follow the outside temperature [1/time]. */
+  /** Updates the exchange for the capacities and temperatures of nodes. Returns the largest rate on
+   *  this rank at which temperatures follow the outside temperature [1/time]. */
   double begin_step();
   /** Notes the lines of these surfaces for edges of the body. */
   void note_edges() const;
-  /** Limits the rate at which temperatures follow to cap, and at edges to the rate of conduction. */
+  /** Limits the rate at which temperatures follow to cap, and at edges to the rate of
+   *  conduction. */
   void limit(double cap, double conduction);
-  /** Gives heat to the body, whose rates must include all other heat already. power: the power on this rank is
-   *  added, one value for each condition. */
+  /** Gives heat to the body, whose rates must include all other heat already. power: the power on
+   *  this rank is added, one value for each condition. */
   void exchange(double *power) const;
-  /** Linearizes the conditions around the present temperatures for exchange_changes(). Returns true if the
-   *  result is symmetric on this rank. */
+  /** Linearizes the conditions around the present temperatures for exchange_changes(). Returns true
+   *  if the result is symmetric on this rank. */
   bool linearize();
   void exchange_changes() const;
   /** Passes on the terms that this rank adds to the matrix of conduction. */
@@ -94,8 +95,8 @@ class MPMHeatSurfaces : protected Pointers {
   std::vector<Wall> walls;
   std::vector<int> wall_of;    // index of the wall of each condition, -1: free surface
   bool has_free = false;
-  /** Shares of the room of a node that the body fills, and that its neighbors fill; the latter at nodes that
-   *  the body reaches. */
+  /** Shares of the room of a node that the body fills, and that its neighbors fill; the latter at
+   *  nodes that the body reaches. */
   std::vector<double> filled, covered;
   std::vector<Place> places;
   std::vector<MPMHeatBody::Part> parts;    // of one place

@@ -7,12 +7,12 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   A node whose function reaches both surfaces of a body gets parts of V grad N of both, which cancel: what is
-   left belongs to a smaller area. That happens where the body is thinner than the functions are wide, 3 node
-   spacings for quadratic functions and 4 for cubic ones. It is found by looking that deep along the normal:
-   in a thin body, there is no material just behind this depth. At edges and corners there is, as far as they
-   are not sharper than a right angle. The area of the lines would not show the difference, because it is
-   small at edges, too.
+   A node whose function reaches both surfaces of a body gets parts of V grad N of both, which
+   cancel: what is left belongs to a smaller area. That happens where the body is thinner than the
+   functions are wide, 3 node spacings for quadratic functions and 4 for cubic ones. It is found by
+   looking that deep along the normal: in a thin body, there is no material just behind this depth.
+   At edges and corners there is, as far as they are not sharper than a right angle. The area of the
+   lines would not show the difference, because it is small at edges, too.
 ------------------------------------------------------------------------- */
 
 #include "heat/mpm_heat_thin.h"
@@ -37,8 +37,8 @@ static constexpr double LEAST_ROOM = 0.1;    // least share of the nodes there t
 static constexpr double MUCH = 0.05;
 
 /* ----------------------------------------------------------------------
-   Is the place empty of material? 1: yes, 0: no, -1: unknown. Nothing is known where no points have been
-   summed up; with one rank, nodes that have no block have no points.
+   Is the place empty of material? 1: yes, 0: no, -1: unknown. Nothing is known where no points have
+   been summed up; with one rank, nodes that have no block have no points.
 ------------------------------------------------------------------------- */
 
 static int is_empty(const MPMHeatBody &body, const double *at)

@@ -17,9 +17,11 @@
 namespace LAMMPS_NS {
 class MPMHeatBody;
 
-/** Detects bodies so thin that nodes see both of their surfaces; the heat through one of these is then lost.
+/** Detects bodies so thin that nodes see both of their surfaces; the heat through one of these is
+ *  then lost.
  *
- *  Entries are conditions and contacts, in any order. All ranks must make the same calls with the same entries. */
+ *  Entries are conditions and contacts, in any order. All ranks must make the same calls with the
+ *  same entries. */
 class MPMHeatThin {
  public:
   struct Found {
@@ -29,10 +31,11 @@ class MPMHeatThin {
 
   /** Begins a step. Returns true if bodies are checked in this step. */
   bool looks(int nentries);
-  /** Adds a place with this area of surface. at: position in node spacings from the origin of the lattice;
-   *  into: unit normal into the body. */
+  /** Adds a place with this area of surface. at: position in node spacings from the origin of the
+   *  lattice; into: unit normal into the body. */
   void take(int entry, const MPMHeatBody &, const double *at, const double *into, double area);
-  /** Called after a check: returns true once, if thin bodies make up much of the area of an entry. Collective. */
+  /** Called after a check: returns true once, if thin bodies make up much of the area of an entry.
+   *  Collective. */
   bool tell(MPI_Comm, Found &);
 
  private:

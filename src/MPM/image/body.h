@@ -9,8 +9,8 @@
 #ifndef MPM_IMAGE_BODY_H
 #define MPM_IMAGE_BODY_H
 
-// Bodies in an image that is placed in the simulation box: the types of pixels, and the fraction of a box that a body
-// fills. Knows nothing of LAMMPS.
+// Bodies in an image that is placed in the simulation box: the types of pixels, and the fraction of
+// a box that a body fills. Knows nothing of LAMMPS.
 
 #include "image/image.h"
 #include "image/level_set.h"
@@ -54,7 +54,8 @@ struct ImageBody {
   /** Upper end of the image along axis d of the box. */
   double hi(int d) const { return lo[d] + pixel[d] * count(d); }
 
-  /** The pixel at x[3], or -1 outside the image. A face between two pixels belongs to the upper one. */
+  /** The pixel at x[3], or -1 outside the image. A face between two pixels belongs to the upper
+   *  one. */
   int64_t pixel_at(const double *x) const;
   /** The pixel at x[3], or the nearest one outside the image. */
   int64_t nearest_pixel(const double *x) const;
@@ -66,8 +67,8 @@ struct ImageBody {
   /** Removes columns, rows, and slices at the faces of the image that contain no body. */
   void crop();
 
-  /** Makes the surface of a body with a single step. For the arguments see LevelSet; here wraps[d] refers to axes of the
-   *  box. */
+  /** Makes the surface of a body with a single step. For the arguments see LevelSet; here wraps[d]
+   *  refers to axes of the box. */
   void make_surface(double width, const bool *wraps);
   /** Fraction, 0 to 1, of a box with center x[3] and these edges that is inside the surface. */
   double share_at(const double *x, const double *edges) const;

@@ -9,7 +9,8 @@
 #ifndef MPM_IMAGE_FILE_H
 #define MPM_IMAGE_FILE_H
 
-// Common parts of the readers of image files: access to bytes, and checks of sizes against the length of the file.
+// Common parts of the readers of image files: access to bytes, and checks of sizes against the
+// length of the file.
 
 #include "image/image.h"
 
@@ -40,15 +41,17 @@ class ImageFile {
   /** Reads a line, without its end; false at the end of the file. */
   bool line(std::string &);
 
-  /** The first 8 bytes (or fewer, if the file is shorter) as a string; goes back to the start of the file. */
+  /** The first 8 bytes (or fewer, if the file is shorter) as a string; goes back to the start of
+   *  the file. */
   std::string magic();
 
-  /** Checks that the numbers of columns, rows, and slices are positive, and that the rest of the file can hold the
-   *  values, with at least least_bits bits for each. */
+  /** Checks that the numbers of columns, rows, and slices are positive, and that the rest of the
+   *  file can hold the values, with at least least_bits bits for each. */
   void check_size(const ImageLayout &, double least_bits);
   /** Does check_size(), and then allocates memory for the values. */
   void make_room(Image &, double least_bits);
-  /** Does make_room(), and then reads all values in the order of the file, as numbers of this machine. */
+  /** Does make_room(), and then reads all values in the order of the file, as numbers of this
+   *  machine. */
   void read_values(Image &, bool big_endian);
 };
 

@@ -9,8 +9,8 @@
 #ifndef MPM_IMAGE_IMAGE_H
 #define MPM_IMAGE_IMAGE_H
 
-// Pictures and stacks of pictures: gray values or colors of pixels. Nothing here knows about LAMMPS. (mpm_image.h
-// is about periodic images.)
+// Pictures and stacks of pictures: gray values or colors of pixels. Nothing here knows about
+// LAMMPS. (mpm_image.h is about periodic images.)
 
 #include <cstddef>
 #include <cstdint>
@@ -46,7 +46,8 @@ struct Image : ImageLayout {
 
   /** Value of a channel of a pixel; pixel = column + n[0]*(row + n[1]*slice). */
   double number(int64_t pixel, int channel) const;
-  /** Gray value of a pixel: its value, or the brightness 0.299 R + 0.587 G + 0.114 B of a color (ITU-R BT.601). */
+  /** Gray value of a pixel: its value, or the brightness 0.299 R + 0.587 G + 0.114 B of a color
+   *  (ITU-R BT.601). */
   double gray(int64_t pixel) const;
 
   /** Keeps columns, rows, slices first[d] to first[d] + count[d] - 1. */
@@ -61,14 +62,15 @@ struct RawLayout {
   int64_t skip = 0;    ///< bytes in front of the values
 };
 
-/** Numbers of a series of files. Their name has %d in place of the number, or %04d for at least four digits. */
+/** Numbers of a series of files. Their name has %d in place of the number, or %04d for at least
+ *  four digits. */
 struct SliceRange {
   int64_t first = 0, last = -1;    ///< last < first: a single file
 };
 
-/** Reads an image or a stack of images. The format is found from the first bytes of the file: PBM, PGM, PPM (P1 to P6),
- *  PNG, or NRRD; or the file has values without a header. On errors, also if a value is not finite, throws
- *  std::runtime_error that begins with the name of the file. */
+/** Reads an image or a stack of images. The format is found from the first bytes of the file: PBM,
+ *  PGM, PPM (P1 to P6), PNG, or NRRD; or the file has values without a header. On errors, also if a
+ *  value is not finite, throws std::runtime_error that begins with the name of the file. */
 Image read_image(const std::string &file, const RawLayout &raw = {}, const SliceRange &slices = {});
 
 /** Was this compiled with libpng? */

@@ -9,7 +9,8 @@
 #ifndef MPM_IMAGE_LEVEL_SET_H
 #define MPM_IMAGE_LEVEL_SET_H
 
-// The surface of a body in an image with subpixel resolution: where the smoothed values equal a threshold.
+// The surface of a body in an image with subpixel resolution: where the smoothed values equal a
+// threshold.
 
 #include <cstdint>
 #include <functional>
@@ -17,26 +18,27 @@
 
 namespace MPM_NS {
 
-/** Fraction of the unit cube of dimension dim, centered at zero, in which value + gradient . x is positive; exact (R.
- *  Scardovelli, S. Zaleski, J. Comput. Phys. 164 (2000) 228). */
+/** Fraction of the unit cube of dimension dim, centered at zero, in which value + gradient . x is
+ *  positive; exact (R. Scardovelli, S. Zaleski, J. Comput. Phys. 164 (2000) 228). */
 double share_above(double value, const double *gradient, int dim);
 
-/** Values at the centers of pixels, positive in the body, with linear interpolation along each axis between them.
- *  All lengths are in pixels, from the lower corner of the first pixel. */
+/** Values at the centers of pixels, positive in the body, with linear interpolation along each axis
+ *  between them. All lengths are in pixels, from the lower corner of the first pixel. */
 class LevelSet {
  public:
-  /** n[3]: number of columns, rows, slices. wraps[3]: axes along which the image is periodic; at other faces it
-   *  continues with the values of the outermost pixels. width: standard deviation of the Gaussian filter that smooths
-   *  the values; 0: no smoothing. value: value of a pixel by its number, with columns running fastest. */
+  /** n[3]: number of columns, rows, slices. wraps[3]: axes along which the image is periodic; at
+   *  other faces it continues with the values of the outermost pixels. width: standard deviation of
+   *  the Gaussian filter that smooths the values; 0: no smoothing. value: value of a pixel by its
+   *  number, with columns running fastest. */
   LevelSet(const int64_t *n, int dim, const bool *wraps, double width,
            const std::function<double(int64_t)> &value);
 
   /** Interpolated value at x[dim]. */
   double at(const double *x) const;
 
-  /** Volume of the body in a box of the image, in pixels. The box is cut at the centers and the faces of pixels, and the
-   *  surface is approximated by a plane in each part, so that the error is of second order in the size of pixels. Space
-   *  outside the image is empty. */
+  /** Volume of the body in a box of the image, in pixels. The box is cut at the centers and the
+   *  faces of pixels, and the surface is approximated by a plane in each part, so that the error is
+   *  of second order in the size of pixels. Space outside the image is empty. */
   double volume(const double *lo, const double *hi) const;
 
  private:

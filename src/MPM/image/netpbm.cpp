@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Pictures of the Netpbm programs: PBM (bits), PGM (gray), and PPM (colors), as text (P1, P2, P3) and as bytes (P4, P5,
-// P6); https://netpbm.sourceforge.net/doc/#formats
+// Pictures of the Netpbm programs: PBM (bits), PGM (gray), and PPM (colors), as text (P1, P2, P3)
+// and as bytes (P4, P5, P6); https://netpbm.sourceforge.net/doc/#formats
 
 #include "image/file.h"
 

@@ -6,8 +6,9 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// NRRD, pictures and stacks with a header as text (https://teem.sourceforge.net/nrrd/format.html): values as bytes
-// (encoding raw), in the same file or in one of their own (a header in a file .nhdr).
+// NRRD, pictures and stacks with a header as text (https://teem.sourceforge.net/nrrd/format.html):
+// values as bytes (encoding raw), in the same file or in one of their own (a header in a file
+// .nhdr).
 
 #include "image/file.h"
 

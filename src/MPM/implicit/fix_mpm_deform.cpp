@@ -6,29 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   A cell of a periodic body, in the total frame. With the mean deformation gradient Fm, and the velocity v of points and
-   nodes without the mean motion,
-
-     F <- F + dt (dv/dX + dFm/dt),   f_i = -sum V0 P dN_i/dX
-
-   Periodic v do no work against the mean stress, so that (R. Hill, J. Mech. Phys. Solids 11 (1963) 357)
-
-     <P> : dFm/dt = <P : dF/dt>,   <.> = sum over points, with V0, over the volume of the cell
-
-   up to the inertia of v, and the work of the mean motion is that of the mean stress <P>. Empty places have no stress. The inertia
-   of the mean motion itself, which in a cell of a large body is that of the whole body, is left out.
-
-   A component with a stress s* moves like a mass of the inertia rho L^2 for each volume, with the mean density rho and the longest
-   edge L of the cell,
-
-     rho L^2 de/dt = s* - s
-
-   so that it swings 2 pi times slower than the slowest wave in the cell, whatever its stiffness is. Whenever it passes s*, it goes on with the mean
-   speed since it has done so before: a swing about a stress at rest ends at once, one about a stress or another strain that goes on keeps up with it. As
-   with kinetic damping (fix mpm/relax), no coefficient has to be chosen.
-------------------------------------------------------------------------- */
-
 #include "implicit/fix_mpm_deform.h"
 
 #include "base/mpm_options.h"
@@ -54,7 +31,6 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
-static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
 static constexpr double STRAINED = 1.0e-6;    // mean strain that is more than round-off
 static constexpr const char *PART_NAME[6] = {"x", "y", "z", "xy", "xz", "yz"};
 
@@ -67,23 +43,24 @@ Options MPMDeformOptions::declare(int dim)
   using namespace option;
   Options o("fix mpm/deform");
   for (int k = 0; k < NPART; k++) {
-    if (dim == 2 && (ROW[k] == 2 || COLUMN[k] == 2)) continue;
+    if (dim == 2 && (MPMMeanDeformation::ROW[k] == 2 || MPMMeanDeformation::COLUMN[k] == 2))
+      continue;
     const auto value = [&](const char *name, const char *unit) {
       return std::vector<OptionValue>{variables(&wanted[k], 1, name, unit, "")};
     };
     const bool shear = k > 2;
-    std::vector<OptionWord> ways = {{"erate", ERATE,
+    std::vector<OptionWord> ways = {{"erate", MPMMeanDeformation::ERATE,
                                      shear ? "rate of the angle of shear, R = d(gamma)/dt"
                                            : "rate of the engineering strain, R = d(L/L0)/dt",
                                      value("R", "1/time")}};
     if (!shear)
-      ways.push_back(
-          {"trate", TRATE, "rate of the true strain, R = d(ln L)/dt", value("R", "1/time")});
-    ways.push_back({"strain", STRAIN,
+      ways.push_back({"trate", MPMMeanDeformation::TRATE, "rate of the true strain, R = d(ln L)/dt",
+                      value("R", "1/time")});
+    ways.push_back({"strain", MPMMeanDeformation::STRAIN,
                     shear ? "angle of shear at the end of the step"
                           : "engineering strain L/L0 - 1 at the end of the step",
                     value("e", "")});
-    ways.push_back({"stress", STRESS,
+    ways.push_back({"stress", MPMMeanDeformation::STRESS,
                     "target of the mean true stress in the cell, tension positive",
                     value("s", "pressure")});
     o.add(PART_NAME[k], {word(drive[k], ways, "way")}).standard("kept as it is").once();
@@ -97,8 +74,6 @@ FixMPMDeform::FixMPMDeform(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
     error->all(FLERR, 1, "Fix mpm/deform strains all of a periodic cell: use group all");
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
-  std::copy_n(past.F, 9, next);
-  std::fill_n(rate, 9, 0.0);
   scalar_flag = vector_flag = 1;
   size_vector = 18;
   global_freq = 1;
@@ -113,15 +88,14 @@ int FixMPMDeform::modify_param(int narg, char **arg)
 {
   Options options = declare(domain->dimension);
   if (narg == 0 || !options.has(arg[0])) return 0;
-  for (int k = 0; k < NPART; k++)
-    if (drive[k] != STRESS) past.speed[k] = past.lack[k] = past.way[k] = past.time[k] = 0.0;
+  cell.forget_speeds(drive);
   return read_options(lmp, options, narg, arg, 0);
 }
 
 FixMPMDeform::~FixMPMDeform()
 {
   for (auto *field : MPMField::all(lmp))
-    if (field->frame->mean_rate == rate) field->frame->mean_rate = nullptr;
+    if (field->frame->mean_rate == cell.rate) field->frame->mean_rate = nullptr;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -163,8 +137,8 @@ void FixMPMDeform::refuse_combinations() const
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/deform {} cannot be used with fix {} (style {}): {}", id, other->id,
                    style, why);
-  if (std::none_of(drive, drive + NPART, [](Drive d) {
-        return d == STRESS;
+  if (std::none_of(drive, drive + NPART, [](MPMMeanDeformation::Drive d) {
+        return d == MPMMeanDeformation::STRESS;
       }))
     return;
   for (const auto *rest : find_fixes<FixMPMRelax>(lmp))
@@ -192,7 +166,7 @@ void FixMPMDeform::init_physics(MPMPlan &plan)
          {options.stress_before(), "scheme usf or usavg",
           "they strain points by the motion of the step before: use scheme usl or musl"},
          {options.every > 1, "every", "use every 1"}});
-    field->frame->mean_rate = rate;
+    field->frame->mean_rate = cell.rate;
   }
 }
 
@@ -218,32 +192,26 @@ double FixMPMDeform::volume() const
   return domain->xprd * domain->yprd * (domain->dimension == 3 ? domain->zprd : 1.0);
 }
 
-/** Mean Cauchy stress. */
-double FixMPMDeform::stress(int part) const
-{
-  return past.tau[part] / determinant(past.F);
-}
-
 /** The mean deformation gradient at the end of this step. */
 void FixMPMDeform::find_motion()
 {
-  if (past.known == 0.0) {
+  if (cell.past.known == 0.0) {
     warn_of_strain();
-    find_stress();
-    past.known = 1.0;
+    find_stress(cell.past.tau, cell.past.P);
+    cell.past.known = 1.0;
   }
   bool any = false;
   for (const auto &w : wanted) any = any || !w.variable.empty();
   double now[NPART] = {};
   evaluate_in_step(lmp, any, [&]() {
     for (int k = 0; k < NPART; k++)
-      if (drive[k] != HELD) now[k] = evaluate(lmp, wanted[k]);
+      if (drive[k] != MPMMeanDeformation::HELD) now[k] = evaluate(lmp, wanted[k]);
   });
 
   const double dt = fields[0]->step_dt();
   double inertia = 0.0;    // [pressure time^2]
-  if (std::any_of(drive, drive + NPART, [](Drive d) {
-        return d == STRESS;
+  if (std::any_of(drive, drive + NPART, [](MPMMeanDeformation::Drive d) {
+        return d == MPMMeanDeformation::STRESS;
       })) {
     double mine = 0.0, mass, edge = 0.0;
     for (const auto *field : fields)
@@ -251,46 +219,16 @@ void FixMPMDeform::find_motion()
         if (field->is_point(i)) mine += atom->rmass[i];
     MPI_Allreduce(&mine, &mass, 1, MPI_DOUBLE, MPI_SUM, world);
     for (int d = 0; d < domain->dimension; d++)
-      edge = std::max(edge, domain->prd[d] * past.F[4 * d]);
-    inertia = mass / (volume() * determinant(past.F)) * edge * edge * force->nktv2p / force->ftm2v;
+      edge = std::max(edge, domain->prd[d] * cell.past.F[4 * d]);
+    inertia =
+        mass / (volume() * determinant(cell.past.F)) * edge * edge * force->nktv2p / force->ftm2v;
   }
 
-  std::copy_n(past.F, 9, next);
-  for (int k = 0; k < NPART; k++) {
-    double &F = next[3 * ROW[k] + COLUMN[k]], &speed = past.speed[k];
-    const double unit = k > 2 ? 0.0 : 1.0;
-    switch (drive[k]) {
-      case HELD:
-        break;
-      case ERATE:
-        F += dt * now[k];
-        break;
-      case TRATE:
-        F *= std::exp(dt * now[k]);
-        break;
-      case STRAIN:
-        F = unit + now[k];
-        break;
-      case STRESS: {
-        const double lack = now[k] - stress(k);
-        if (lack * past.lack[k] < 0.0) {
-          speed = past.way[k] / past.time[k];
-          past.way[k] = past.time[k] = 0.0;
-        }
-        past.lack[k] = lack;
-        speed += dt * lack / inertia;
-        past.way[k] += dt * speed;
-        past.time[k] += dt;
-        F += dt * speed * past.F[4 * COLUMN[k]];
-        break;
-      }
-    }
-    if (k < 3 && !(F > 0.0))
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/deform {}: the cell has the length {:.6g} along {} at step {}", id,
-                 F * domain->prd[k], PART_NAME[k], update->ntimestep);
-  }
-  for (int c = 0; c < 9; c++) rate[c] = (next[c] - past.F[c]) / dt;
+  const int k = cell.advance(dt, drive, now, inertia);
+  if (k >= 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/deform {}: the cell has the length {:.6g} along {} at step {}", id,
+               cell.next[4 * k] * domain->prd[k], PART_NAME[k], update->ntimestep);
 }
 
 /** Is there a mean deformation that this fix does not know of? */
@@ -315,8 +253,8 @@ void FixMPMDeform::warn_of_strain() const
         id, most / all[9]);
 }
 
-/** Mean stress of the points, tau and P = tau F^-T. */
-void FixMPMDeform::find_stress()
+/** Mean stress of the points, mean_tau [6] and mean_P [9], P = tau F^-T. */
+void FixMPMDeform::find_stress(double *mean_tau, double *mean_P)
 {
   double mine[15] = {}, all[15];
   for (const auto *field : fields)
@@ -330,20 +268,18 @@ void FixMPMDeform::find_stress()
     }
   MPI_Allreduce(mine, all, 15, MPI_DOUBLE, MPI_SUM, world);
   for (double &sum : all) sum /= volume();
-  std::copy_n(all, 6, past.tau);
-  std::copy_n(all + 6, 9, past.P);
+  std::copy_n(all, 6, mean_tau);
+  std::copy_n(all + 6, 9, mean_P);
 }
 
 /** Work is that of the mean of the stress before and after. */
 void FixMPMDeform::end_motion()
 {
-  double P[9], work = 0.0;
-  std::copy_n(past.P, 9, P);
-  find_stress();
-  for (int c = 0; c < 9; c++) work += 0.5 * (P[c] + past.P[c]) * (next[c] - past.F[c]);
+  double tau[6], P[9];
+  find_stress(tau, P);
+  double work = cell.end_step(tau, P);
   work *= volume() / force->nktv2p;
-  past.work += work;
-  std::copy_n(next, 9, past.F);
+  cell.past.work += work;
   if (comm->me) return;
   // stress takes this from the mean motion, besides what it takes from that of nodes
   auto &ledger = fields[0]->ledger;
@@ -357,23 +293,24 @@ void FixMPMDeform::end_motion()
 void FixMPMDeform::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const int size = NREAL * (int) sizeof(double);
+  const int size = MPMMeanDeformation::NREAL * (int) sizeof(double);
   fwrite(&size, sizeof(int), 1, fp);
-  fwrite(reals(), sizeof(double), NREAL, fp);
+  fwrite(cell.reals(), sizeof(double), MPMMeanDeformation::NREAL, fp);
 }
 
 void FixMPMDeform::restart(char *buf)
 {
-  memcpy(reals(), buf, NREAL * sizeof(double));
-  std::copy_n(past.F, 9, next);
+  memcpy(cell.reals(), buf, MPMMeanDeformation::NREAL * sizeof(double));
+  std::copy_n(cell.past.F, 9, cell.next);
 }
 
 /* ----------------------------------------------------------------------
-   mean deformation gradient, mean true stress, and mean nominal stress, at the end of the last step: xx yy zz xy xz yz
+   mean deformation gradient, mean true stress, and mean nominal stress, at the end of the last
+   step: xx yy zz xy xz yz
 ------------------------------------------------------------------------- */
 
 double FixMPMDeform::compute_vector(int n)
 {
-  const int k = n % NPART, entry = 3 * ROW[k] + COLUMN[k];
-  return n < NPART ? past.F[entry] : n < 2 * NPART ? stress(k) : past.P[entry];
+  const int k = n % NPART, entry = 3 * MPMMeanDeformation::ROW[k] + MPMMeanDeformation::COLUMN[k];
+  return n < NPART ? cell.past.F[entry] : n < 2 * NPART ? cell.stress(k) : cell.past.P[entry];
 }

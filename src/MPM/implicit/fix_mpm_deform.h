@@ -18,6 +18,8 @@ FixStyle(mpm/deform,FixMPMDeform);
 #include "declare/option.h"
 #include "field/mpm_physics.h"
 
+#include "implicit/mpm_mean_deformation.h"
+
 #include "fix.h"
 
 namespace LAMMPS_NS {
@@ -25,20 +27,21 @@ class MPMField;
 
 /** Keywords of fix mpm/deform. */
 struct MPMDeformOptions {
-  enum Drive { HELD, ERATE, TRATE, STRAIN, STRESS };
-  static constexpr int NPART = 6;    ///< xx yy zz xy xz yz
+  static constexpr int NPART = MPMMeanDeformation::NPART;
 
-  Drive drive[NPART] = {HELD, HELD, HELD, HELD, HELD, HELD};
-  MPM_NS::NumberOrVariable wanted[NPART];    ///< rate, strain, or stress
+  MPMMeanDeformation::Drive drive[NPART] = {};    ///< HELD
+  MPM_NS::NumberOrVariable wanted[NPART];         ///< rate, strain, or stress
 
   MPM_NS::Options declare(int dimension);
 };
 
-/** The mean deformation of a periodic cell, along a path of strain or stress, component by component.
+/** The mean deformation of a periodic cell, along a path of strain or stress, component by
+ *  component.
  *
- *  The position is x = Fm X + u with the mean deformation gradient Fm, an upper triangular matrix as for the box of fix
- *  deform, and the periodic displacement u. Points and nodes move only with u, so that box and lattice stay as they
- *  are. The rate of Fm is added to the velocity gradients that points get from the nodes. */
+ *  The position is x = Fm X + u with the mean deformation gradient Fm, an upper triangular matrix
+ *  as for the box of fix deform, and the periodic displacement u. Points and nodes move only with
+ *  u, so that box and lattice stay as they are. The rate of Fm is added to the velocity gradients
+ *  that points get from the nodes. */
 class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
  public:
   FixMPMDeform(class LAMMPS *, int, char **);
@@ -46,7 +49,7 @@ class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
   int setmask() override { return 0; }
   void init() override;
   int modify_param(int, char **) override;
-  double compute_scalar() override { return past.work; }
+  double compute_scalar() override { return cell.past.work; }
   double compute_vector(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -58,30 +61,13 @@ class FixMPMDeform : public Fix, public MPMPhysics, private MPMDeformOptions {
  private:
   std::vector<MPMField *> fields;
 
-  // state in restart files, the same on all ranks
-  struct {
-    double F[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};    // mean, row-major
-    // components with a given stress: rate of the deformation [1/time]; lack of stress in the last step; deformation and time
-    // since the last change of sign of that lack
-    double speed[NPART] = {}, lack[NPART] = {}, way[NPART] = {}, time[NPART] = {};
-    double tau[6] = {};    // mean Kirchhoff stress over the cell before deformation [pressure]
-    double P[9] = {};      // first Piola-Kirchhoff stress, the same mean
-    double work = 0.0;     // work of the mean deformation so far [energy]
-    double known = 0.0;    // 1: the stress is known
-  } past;
-  static constexpr int NREAL = 9 + 4 * NPART + 6 + 9 + 2;
-  double *reals() { return past.F; }
-
-  double next[9];    // F at the end of the step
-  double rate[9];    // rate of F in this step, as seen by the frames
+  MPMMeanDeformation cell;    // the same on all ranks
 
   double volume() const;
-  double length(int axis) const;
-  double stress(int part) const;
   void refuse_combinations() const;
   void warn_of_strain() const;
   void find_motion();
-  void find_stress();
+  void find_stress(double *mean_tau, double *mean_P);
   void end_motion();
 };
 

@@ -24,8 +24,9 @@ FixStyle(mpm/implicit,FixMPMImplicit);
 
 namespace LAMMPS_NS {
 
-/** Implicit steps of a field, or of several fields in contact. In place of the explicit momentum equation, it solves for
- *  the velocities of nodes with the stress at the end of the step, with inertia or as a sequence of equilibrium states. */
+/** Implicit steps of a field, or of several fields in contact. In place of the explicit momentum
+ *  equation, it solves for the velocities of nodes with the stress at the end of the step, with
+ *  inertia or as a sequence of equilibrium states. */
 class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplicitOptions {
  public:
   FixMPMImplicit(class LAMMPS *, int, char **);
@@ -43,14 +44,14 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   bool looks_beyond_points() const override { return false; }
   /** True except for the mid-point rule, which keeps angular momentum with moving least squares. */
-  bool brings_to_rest() const override { return time != MIDPOINT; }
+  bool brings_to_rest() const override { return time.kind != MPMTimeMethod::MIDPOINT; }
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
  private:
   std::vector<MPMField *> fields;
   std::unique_ptr<MPMImplicit> solver;
-  MPMImplicit::Accelerations kept;    // of points, for methods that need those of the previous step
+  MPMPointAccelerations kept;    // of points, for methods that need those of the previous step
   enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, MADE, STUCK, NTOTAL };
   double total[NTOTAL] = {};    // counts so far
   enum {
@@ -66,19 +67,26 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
     NLAST
   };
   double last[NLAST] = {};    // of the last step, also in a previous run
-  double taken[2] =
-      {};    // static: kinetic energy taken from points, and work in a step; this rank's share [energy]
-  double at_start[NTOTAL] = {};    // total[] at the start of this run
-  double seconds = 0.0;            // time spent in the solver in this run
-  bool told_of_turns = false;      // was it reported that rotated bodies yield with stress mls?
+  // static: kinetic energy taken from points, and work in a step; this rank's share [energy]
+  double taken[2] = {};
+  double at_start[NTOTAL] = {};       // total[] at the start of this run
+  double seconds = 0.0;               // time spent in the solver in this run
+  bool warned_of_rotation = false;    // was it reported that rotated bodies yield with stress mls?
 
+  /** Does an implicit step of this field solve for a pressure of this physics, too? */
+  static bool has_pressure(MPMPhysics *, const MPMField &);
   void check_bodies(const MPMPlan &) const;
   void check_field(const MPMPlan &, MPMField &) const;
+  void check_physics(const MPMPlan &) const;
+  void check_transfer(MPMField &) const;
+  void check_stabilization(const MPMPlan &, MPMField &) const;
+  void check_elements(const MPMPlan &, MPMField &) const;
+  void check_actions(const MPMPlan &, const MPMField &) const;
   bool may_stabilize(const MPMField &) const;
   void choose_stabilize(const MPMPlan &);
   void step();
   void rest();
-  void tell_of_turns();
+  void warn_of_rotation();
 };
 
 }    // namespace LAMMPS_NS

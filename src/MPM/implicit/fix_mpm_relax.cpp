@@ -7,21 +7,10 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   A body that is released from a state out of equilibrium turns the energy that it has too much into
-   motion. Where this is greatest it passes through equilibrium of its slowest mode; taking the motion away
-   there takes that energy out, and what is left is that of the other modes. No coefficient has to be
-   chosen, and where the energy does not fall nothing is done.
-
-   Velocities belong to the middle of steps. A mode of angular frequency omega that starts at u is at u cos((n + 1/2) theta)/cos(theta/2) n
-   steps after a rest, with 2 sin(theta/2) = omega dt. Where its maximum is passed within three steps, that is for omega dt from
-   0.77 to 1.41, this is further away than it began, by up to a quarter each time, and the mode grows without end when no other
-   one is left. From rest, however, forces have half a step to the middle of the next one only: where nodes get half of the
-   change of their velocities there, the mode is at u cos(n theta). As that makes way more slowly, it is done once the
-   energies at rests that come so soon have grown.
-
-   Forces on a node are balanced if its velocity does not change: m dv/dt, with the reactions of walls and
-   contacts, which have changed velocities in the same step. They are compared with the forces that the
-   stress of points brings to nodes, sum_p V_p |sigma_p|/h, which cancel in equilibrium.
+   Forces on a node are balanced if its velocity does not change: m dv/dt, with the reactions of
+   walls and contacts, which have changed velocities in the same step. They are compared with the
+   forces that the stress of points brings to nodes, sum_p V_p |sigma_p|/h, which cancel in
+   equilibrium.
 ------------------------------------------------------------------------- */
 
 #include "implicit/fix_mpm_relax.h"
@@ -36,7 +25,7 @@
 #include "field/mpm_heat_sink.h"
 #include "field/mpm_refined_body.h"
 #include "field/mpm_rest.h"
-#include "implicit/mpm_mls_turn.h"
+#include "implicit/mpm_mls_rotation.h"
 #include "walls/fix_mpm_boundary.h"
 
 #include "atom.h"
@@ -55,9 +44,6 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
-static constexpr double SOON = 3.0;    // steps between two rests
-static constexpr double GROWN =
-    100.0;    // largest kinetic energy before a rest over the least one so far
 static constexpr double UNKNOWN = std::numeric_limits<double>::infinity();
 
 /* ----------------------------------------------------------------------
@@ -80,7 +66,7 @@ FixMPMRelax::FixMPMRelax(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
     error->all(FLERR, 1, "Fix mpm/relax brings the points of all fix mpm to rest: use group all");
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
-  ratio = least = UNKNOWN;
+  ratio = UNKNOWN;
   nevery = 1;
   scalar_flag = vector_flag = 1;
   size_vector = 4;
@@ -103,7 +89,8 @@ void FixMPMRelax::init_physics(MPMPlan &plan)
   may_start_by_half = can_start_by_half(plan);
 }
 
-/** Half of the velocities is what holds at nodes, too, where walls are at rest and other physics does not look at these. */
+/** Half of the velocities is what holds at nodes, too, where walls are at rest and other physics
+ *  does not look at these. */
 bool FixMPMRelax::can_start_by_half(const MPMPlan &plan) const
 {
   const bool simple_fields = std::none_of(fields.begin(), fields.end(), [](const MPMField *field) {
@@ -143,8 +130,9 @@ void FixMPMRelax::setup(int)
 
 /* ---------------------------------------------------------------------- */
 
-/** Half a step from rest to the middle of this one: walls and contacts have had the forces of all of it. Of this, the ledger has the energy
- *  that nodes lose; the watch, which has the work of forces at the mean velocities of points, the rest. */
+/** Half a step from rest to the middle of this one: walls and contacts have had the forces of all
+ *  of it. Of this, the ledger has the energy that nodes lose; the watch, which has the work of
+ *  forces at the mean velocities of points, the rest. */
 void FixMPMRelax::start_by_half()
 {
   for (auto *field : fields) {
@@ -161,13 +149,13 @@ void FixMPMRelax::start_by_half()
     taken[0] += before - after;
     taken[1] -= before - 2.0 * after;
   }
-  kinetic *= 0.25;
+  damping.kinetic *= 0.25;
 }
 
 void FixMPMRelax::look()
 {
-  const bool starts = may_start_by_half && grows > 0.0 && kinetic == 0.0 && interval <= SOON;
-  const bool looks = std::fmod(nsteps++, look_every) == 0.0;
+  const bool starts = may_start_by_half && damping.starts_by_half();
+  const bool looks = std::fmod(damping.nsteps, look_every) == 0.0;
   double mine[3] = {0.0, 0.0, 0.0}, all[3];    // energy, forces, forces of stress
   for (auto *field : fields) {
     Grid &grid = field->grid;
@@ -189,9 +177,7 @@ void FixMPMRelax::look()
   }
   if (looks) mine[2] = force_of_stress();
   MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
-  peak = all[0] < kinetic ? kinetic : 0.0;
-  falls = all[0] < kinetic || state == LAST_STEP;
-  kinetic = all[0];
+  falls = damping.advance(all[0]) || state == LAST_STEP;
   unbalanced = all[1];
   if (starts) start_by_half();
   if (!looks) return;
@@ -225,33 +211,28 @@ double FixMPMRelax::force_of_stress() const
 
 void FixMPMRelax::rest()
 {
-  if (!told_of_turns) tell_of_turns();
+  if (!warned_of_rotation) warn_of_rotation();
   for (auto *field : fields) put_to_rest(*field, taken);
-  kinetic = 0.0;
-  nrests++;
-  interval = nsteps - rested;
-  rested = nsteps;
-  if (interval > SOON || peak == 0.0) return;
-  if (peak > GROWN * least) grows = 1.0;
-  least = std::min(least, peak);
+  damping.rest();
 }
 
 /** Once. */
-void FixMPMRelax::tell_of_turns()
+void FixMPMRelax::warn_of_rotation()
 {
   for (const auto *field : fields) {
-    const double turn = turn_with_mls(*field);
-    if (!is_turned(turn)) continue;
-    told_of_turns = true;
+    const double rotation = mls_rotation(*field);
+    if (!is_large_rotation(rotation)) continue;
+    warned_of_rotation = true;
     if (comm->me == 0)
-      error->warning(FLERR, "Fix mpm/relax {}: {}", id, about_turn_with_mls(turn, field->id()));
+      error->warning(FLERR, "Fix mpm/relax {}: {}", id,
+                     warning_of_mls_rotation(rotation, field->id()));
     return;
   }
 }
 
 /* ----------------------------------------------------------------------
-   the run ends as with fix halt, a step after it is known that it does, so that there is thermodynamic
-   output of the last one
+   the run ends as with fix halt, a step after it is known that it does, so that there is
+   thermodynamic output of the last one
 ------------------------------------------------------------------------- */
 
 void FixMPMRelax::end_of_step()
@@ -275,7 +256,7 @@ void FixMPMRelax::post_run()
     timer->reset_timeout();
     if (comm->me == 0)
       utils::logmesg(lmp, "Fix mpm/relax {}: forces are balanced to {:.3g} after {:.0f} rests\n",
-                     id, ratio, nrests);
+                     id, ratio, damping.nrests);
   } else if (comm->me == 0 && update->nsteps > 0 && stops) {
     const bool nearly = state == LAST_STEP;
     error->warning(
@@ -288,7 +269,7 @@ void FixMPMRelax::post_run()
 
 double FixMPMRelax::compute_vector(int k)
 {
-  const double values[4] = {unbalanced, carried, kinetic, nrests};
+  const double values[4] = {unbalanced, carried, damping.kinetic, damping.nrests};
   return values[k];
 }
 
@@ -298,8 +279,9 @@ void FixMPMRelax::write_restart(FILE *fp)
 {
   keep_totals(world, taken, 2);
   if (comm->me) return;
-  const double list[] = {kinetic,  unbalanced, carried, ratio,    nrests, nsteps,
-                         taken[0], taken[1],   rested,  interval, least,  grows};
+  const auto &d = damping;
+  const double list[] = {d.kinetic, unbalanced, carried,  ratio,      d.nrests, d.nsteps,
+                         taken[0],  taken[1],   d.rested, d.interval, d.least,  d.grows};
   const int size = sizeof(list);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(list, size, 1, fp);
@@ -308,15 +290,15 @@ void FixMPMRelax::write_restart(FILE *fp)
 void FixMPMRelax::restart(char *buf)
 {
   const auto *const list = (const double *) buf;
-  kinetic = list[0];
+  damping.kinetic = list[0];
   unbalanced = list[1];
   carried = list[2];
   ratio = list[3];
-  nrests = list[4];
-  nsteps = list[5];
+  damping.nrests = list[4];
+  damping.nsteps = list[5];
   if (comm->me == 0) std::copy_n(list + 6, 2, taken);
-  rested = list[8];
-  interval = list[9];
-  least = list[10];
-  grows = list[11];
+  damping.rested = list[8];
+  damping.interval = list[9];
+  damping.least = list[10];
+  damping.grows = list[11];
 }

@@ -18,6 +18,7 @@ FixStyle(mpm/relax,FixMPMRelax);
 #include "declare/option.h"
 #include "field/mpm_physics.h"
 #include "fix.h"
+#include "implicit/mpm_kinetic_damping.h"
 
 namespace LAMMPS_NS {
 
@@ -30,9 +31,10 @@ struct MPMRelaxOptions {
   MPM_NS::Options declare();
 };
 
-/** Brings all material points to rest in equilibrium by dynamic relaxation with kinetic damping: velocities are
- *  set to zero whenever the kinetic energy has passed a maximum, until the forces on the nodes are balanced
- *  (P.A. Cundall, 1976; M.R. Barnes, Computers and Structures 30, 685-695, 1988). */
+/** Brings all material points to rest in equilibrium by dynamic relaxation with kinetic damping:
+ *  velocities are set to zero whenever the kinetic energy has passed a maximum, until the forces on
+ *  the nodes are balanced (P.A. Cundall, 1976; M.R. Barnes, Computers and Structures 30, 685-695,
+ *  1988). */
 class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
  public:
   FixMPMRelax(class LAMMPS *, int, char **);
@@ -62,27 +64,21 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
 
  private:
   enum { RUNNING, LAST_STEP, ENDED } state = RUNNING;
-  double kinetic = 0.0;       // of the nodes at the end of the last step, on all ranks [energy]
-  double unbalanced = 0.0;    // sum of forces on nodes, on all ranks [force]
-  double carried = 0.0;       // sum of forces on nodes by the stress of points [force]
-  double ratio = 0.0;         // unbalanced over carried; UNKNOWN before the first check
-  double nrests = 0.0;        // number of times that velocities were set to zero
-  double nsteps = 0.0;        // number of steps so far
-  double rested = 0.0;        // value of nsteps at the last rest
-  double interval = 0.0;      // steps between the last two rests
-  double peak = 0.0;          // kinetic energy before it fell in this step; 0: it did not fall
-  double least;               // smallest peak at rests that follow each other soon
-  double grows = 0.0;         // 1: these peaks have grown
-  // energies taken so far, this rank's share; in restart files of all ranks: kinetic energy, and work in a step
+  MPMKineticDamping damping;    // by the energy of nodes of all ranks [energy]
+  double unbalanced = 0.0;      // sum of forces on nodes, on all ranks [force]
+  double carried = 0.0;         // sum of forces on nodes by the stress of points [force]
+  double ratio = 0.0;           // unbalanced over carried; UNKNOWN before the first check
+  // energies taken so far, this rank's share; in restart files of all ranks: kinetic energy, and
+  // work in a step
   double taken[2] = {0.0, 0.0};
   bool falls = false;    // does the kinetic energy fall in this step?
   std::vector<MPMField *> fields;
   bool may_start_by_half = false;
-  bool told_of_turns = false;    // was it reported that rotated bodies yield with stress mls?
+  bool warned_of_rotation = false;    // was it reported that rotated bodies yield with stress mls?
 
   void look();
   void rest();
-  void tell_of_turns();
+  void warn_of_rotation();
   bool can_start_by_half(const MPMPlan &) const;
   void start_by_half();
   double force_of_stress() const;

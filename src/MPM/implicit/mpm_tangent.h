@@ -27,16 +27,16 @@ namespace LAMMPS_NS {
 class MPMField;
 class MPMTrialForces;
 
-/** Stress of the points of a field after a motion that is only tried, and its derivative with respect to that
- *  motion. Material laws work on copies of the state of points: nothing is kept until the step itself moves
- *  them.
+/** Stress of the points of a field after a motion that is only tried, and its derivative with
+ *  respect to that motion. Material laws work on copies of the state of points: nothing is kept
+ *  until the step itself moves them.
  *
- *  A motion is a vector u [node][dim] of displacements in the step. A point has their gradient H_ij =
- *  du_i/dX_j with respect to the places of the lattice, and H_zz = u_r/r if there is an axis of symmetry.
- *  Conjugate to these is the first Piola-Kirchhoff stress P = tau (F + H)^-T per unit of the initial volume,
- *  where F is the deformation of the places of the lattice at the start of the step: unity in the updated
- *  frame. Entries of H and P are column-major, with the entry around the axis at the end. Forces on nodes are
- *  in units of mass times acceleration. */
+ *  A motion is a vector u [node][dim] of displacements in the step. A point has their gradient H_ij
+ *  = du_i/dX_j with respect to the places of the lattice, and H_zz = u_r/r if there is an axis of
+ *  symmetry. Conjugate to these is the first Piola-Kirchhoff stress P = tau (F + H)^-T per unit of
+ *  the initial volume, where F is the deformation of the places of the lattice at the start of the
+ *  step: unity in the updated frame. Entries of H and P are column-major, with the entry around the
+ *  axis at the end. Forces on nodes are in units of mass times acceleration. */
 class MPMTangent : protected Pointers {
  public:
   MPMTangent(class LAMMPS *lmp, MPMField &field);
@@ -48,77 +48,81 @@ class MPMTangent : protected Pointers {
   /** External forces of all points in this step, from atom->f. Must be called first in each step.
    *  Collective. */
   void external_forces(double *force);
-  /** A point of which only a share has stress and loads that follow: walls carry the rest in this step. */
-  struct Part {
+  /** A point of which only a share has stress and loads that follow: walls carry the rest in this
+   *  step. */
+  struct CarriedPoint {
     bigint point;
     double share;
   };
   /** Sets these points for the present step. */
-  void set_parts(std::vector<Part> list) { parts = std::move(list); }
+  void set_carried(std::vector<CarriedPoint> list) { carried = std::move(list); }
   /** External forces on the rest of these points, from atom->f. Collective. */
-  void forces_on_rest(double *force);
-  /** Forces of the stress after the motion u. carried: sum of V |P| / h over the points of this rank, the
-   *  size of the forces that cancel in equilibrium [mass acceleration]. Returns false, on all ranks, if a
-   *  point is turned inside out or has a stress that is not finite. Collective. */
-  bool forces(const double *u, double dt, double *force, double &carried);
+  void forces_on_carried(double *force);
+  /** Forces of the stress after the motion u. size: sum of V |P| / h over the points of this
+   *  rank, the size of the forces that cancel in equilibrium [mass acceleration]. Returns false, on
+   *  all ranks, if a point is turned inside out or has a stress that is not finite. Collective. */
+  bool forces(const double *u, double dt, double *force, double &size);
 
-  /** Finds dP/dH of all points at the motion u, from the tangents of materials that have one, and from
-   *  central differences for the others. Returns the sum of V |dP/dH| / h over all points, with the largest
-   *  entry of each: a uniform strain e makes forces of e times this sum, which cancel. Collective. */
+  /** Finds dP/dH of all points at the motion u, from the tangents of materials that have one, and
+   *  from central differences for the others. Returns the sum of V |dP/dH| / h over all points,
+   *  with the largest entry of each: a uniform strain e makes forces of e times this sum, which
+   *  cancel. Collective. */
   double linearize(const double *u, double dt);
   /** Change of the forces for a small change du of that motion. Collective. */
   void change_of_forces(const double *du, double *dforce)
   {
     change_of_forces(du, dforce, nullptr, nullptr);
   }
-  /** The same with the changes dp [n] of a pressure that points have besides their stress. It also finds the
-   *  changes dV [n] of their volumes. */
+  /** The same with the changes dp [n] of a pressure that points have besides their stress. It also
+   *  finds the changes dV [n] of their volumes. */
   void change_of_forces(const double *du, double *dforce, const double *dp, double *dV);
-  /** A pressure in the forces of points besides their stress, [n], compression positive; null: none. As a
-   *  Cauchy stress, it acts on the points as they are after the motion. Set it before forces() and
-   *  linearize(). */
+  /** A pressure in the forces of points besides their stress, [n], compression positive; null:
+   *  none. As a Cauchy stress, it acts on the points as they are after the motion. Set it before
+   *  forces() and linearize(). */
   void set_pressure(const double *of_points) { pressure = of_points; }
   /** Should linearize() also keep the tangents of the stress without this pressure? */
   void keep_without_pressure(bool keeps) { keeps_stress = keeps; }
-  /** Should products, blocks, and points be those of the stress without this pressure from now on? These
-   *  tangents must have been kept. Otherwise they include the pressure. */
+  /** Should products, blocks, and points be those of the stress without this pressure from now on?
+   *  These tangents must have been kept. Otherwise they include the pressure. */
   void leave_out_pressure(bool leaves) { of_stress = leaves; }
-  /** Changes of the volumes of points by the motion u, [n], as for points with such a pressure. In the plane
-   *  and in space only. Collective. */
+  /** Changes of the volumes of points by the motion u, [n], as for points with such a pressure. In
+   *  the plane and in space only. Collective. */
   void volume_changes(const double *u, double *dV);
-  /** [n] Moduli of points for compression without lateral strain, from their tangents, averaged over the axes
-   *  [pressure]. */
+  /** [n] Moduli of points for compression without lateral strain, from their tangents, averaged
+   *  over the axes [pressure]. */
   void find_moduli(std::vector<double> &moduli) const;
   /** Should forces() and linearize() keep the deformation of points from now on? */
   void keep_deformations(bool keeps);
   /** [k][dim][dim] Rotations of the places of the lattice around the nodes of a list, from the mean
-   *  deformation of the points there after the last motion that was kept; unity where there are no points.
-   *  Collective. */
+   *  deformation of the points there after the last motion that was kept; unity where there are no
+   *  points. Collective. */
   void mean_rotations(const std::vector<int64_t> &of, std::vector<double> &rotations);
-  /** Minus the change of the force on each node due to its own motion alone: [node][dim][dim]. Collective. */
+  /** Minus the change of the force on each node due to its own motion alone: [node][dim][dim].
+   *  Collective. */
   void diagonal(std::vector<double> &blocks);
-  /** Forces of loads that follow the deformation after the motion u, minus those in atom->f. Collective. */
+  /** Forces of loads that follow the deformation after the motion u, minus those in atom->f.
+   *  Collective. */
   void loads(const double *u, double *force);
   /** Are there such loads on any rank? Known after external_forces(). */
   bool has_loads() const { return loaded; }
-  /** Contribution of one point to the system: the n nodes that it reaches, [n][ngrad] gradients of their
-   *  functions, and [dim ngrad][dim ngrad] minus the change of its force with H, with row and column l*dim +
-   *  a for H_al, in the units of forces. */
+  /** Contribution of one point to the system: the n nodes that it reaches, [n][ngrad] gradients of
+   *  their functions, and [dim ngrad][dim ngrad] minus the change of its force with H, with row and
+   *  column l*dim + a for H_al, in the units of forces. */
   using UsePoint = std::function<void(int n, const int64_t *nodes, int ngrad,
                                       const double *gradient, const double *stiffness)>;
-  /** Calls a function for all points of this rank, those of a block one after the other. With an axis of
-   *  symmetry ngrad is dim + 1, and the last entry is that of H_zz, which depends on the first component
-   *  alone. */
+  /** Calls a function for all points of this rank, those of a block one after the other. With an
+   *  axis of symmetry ngrad is dim + 1, and the last entry is that of H_zz, which depends on the
+   *  first component alone. */
   void each_point(const UsePoint &) const;
-  /** Averages of the pressure (locking pressure) resist the changes b of the volume around nodes. These are
-   *  the sums of this rank's points for SplineMultigrid::add_mean(); each_point() leaves them out. around:
-   *  the node; material: its number; changes: [n][dim]. */
+  /** Averages of the pressure (locking pressure) resist the changes b of the volume around nodes.
+   *  These are the sums of this rank's points for SplineMultigrid::add_mean(); each_point() leaves
+   *  them out. around: the node; material: its number; changes: [n][dim]. */
   using UseMean = std::function<void(int64_t around, int material, const double sums[3], int n,
                                      const int64_t *nodes, const double *changes)>;
   void each_mean(const UseMean &) const;
-  /** Asymmetry of the system: largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest entry, that of
-   *  forces between points, or the largest derivative with respect to H of forces on points over the largest
-   *  V |dP/dH| / h. The largest of these is returned. Collective. */
+  /** Asymmetry of the system: largest |dP_k/dH_l - dP_l/dH_k| of all points over their largest
+   *  entry, that of forces between points, or the largest derivative with respect to H of forces on
+   *  points over the largest V |dP/dH| / h. The largest of these is returned. Collective. */
   double asymmetry() const;
 
   double memory_usage() const;
@@ -133,15 +137,15 @@ class MPMTangent : protected Pointers {
   bool mls = false;                            // do gradients use moving least squares?
   std::vector<double> nodes, motion_nodes, history, P, hoop_stress, tangents, no_force,
       forces_on_points, deformations;
-  std::vector<Part> parts;
-  void take_parts();
+  std::vector<CarriedPoint> carried;
+  void reduce_carried();
   bool loaded = false;    // do any points have loads that follow them?
-  // [point][3] forces of these loads in addition to atom->f, and [point][nH][3] their derivatives with
-  // respect to H, if there are any
+  // [point][3] forces of these loads in addition to atom->f, and [point][nH][3] their derivatives
+  // with respect to H, if there are any
   std::vector<double> load_forces, load_tangents;
 
-  // step of the central differences of a gradient: with it, the error by the third derivatives of a law and the
-  // round-off of its stress are both some 1e-10 of its tangent
+  // step of the central differences of a gradient: with it, the error by the third derivatives of a
+  // law and the round-off of its stress are both some 1e-10 of its tangent
   static constexpr double DIFFERENCE = 6.0e-6;
 
   // forces between points, see mpm_trial_forces.h; displacements and forces of points [n][3]
@@ -149,7 +153,7 @@ class MPMTangent : protected Pointers {
   std::size_t nelements = 0;    // the first ones in between; the others are loads
   std::vector<double> point_motion, point_forces, sum_forces;
   void move_points(const double *u);
-  bool add_between(const double *u, double &carried);
+  bool add_between(const double *u, double &size);
 
   bool keeps_deformations = false;
   void keep_deformations(int first, int n, const double *H);
@@ -157,9 +161,9 @@ class MPMTangent : protected Pointers {
   void scatter(const double *forces_of_points, double *force);
   bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
               MPM_NS::Tangent *tangent = nullptr);
-  // for averages of the pressure: mean stress of points and, after linearize(), its derivatives with respect
-  // to H [point][nH]; the addition to the mean stress by averages or by a pressure besides the stress; J G
-  // [point][nH] with G = F^-T of the places
+  // for averages of the pressure: mean stress of points and, after linearize(), its derivatives
+  // with respect to H [point][nH]; the addition to the mean stress by averages or by a pressure
+  // besides the stress; J G [point][nH] with G = F^-T of the places
   std::vector<double> mean_stress, mean_tangents, added, volume_gradients;
   std::vector<double> volumes;    // of points at the start of the step, weights of averages
   MPMNodeScalar means;

@@ -6,18 +6,19 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Loads that follow the deformation of points (MPMLoad::follow()), with their derivatives: the pressure on a surface that
-// becomes larger and turns in the step. Forces of such loads on points depend on H as stress does, but not as derivatives of
-// an energy of these points: systems are not symmetric.
+// Loads that follow the deformation of points (MPMLoad::follow()), with their derivatives: the
+// pressure on a surface that becomes larger and turns in the step. Forces of such loads on points
+// depend on H as stress does, but not as derivatives of an energy of these points: systems are not
+// symmetric.
 
 #include "implicit/mpm_tangent.h"
 
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
-#include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
-#include "force.h"
-#include "material/batch.h"
+#include "field/mpm_trial_forces.h"
+#include "implicit/mpm_tangent_gather.h"
+#include "material/batch_kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,4 +100,31 @@ double MPMTangent::asymmetry_of_loads() const
     }
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
   return all[0] > 0.0 ? all[1] / all[0] : 0.0;
+}
+
+void MPMTangent::loads(const double *u, double *force)
+{
+  std::fill(P.begin(), P.end(), 0.0);
+  std::fill(hoop_stress.begin(), hoop_stress.end(), 0.0);
+  std::fill(load_forces.begin(), load_forces.end(), 0.0);
+  gather(u, [&](const MPMPointMap::Run &, int first, int n, const double *H) {
+    if (!follows(first, n)) return;
+    double stresses[10 * BATCH + 8];
+    load_points(first, n, H, stresses);
+    for (int p = 0; p < n; p++) {
+      std::copy_n(stresses + nH * p, nL, &P[(bigint) nL * (first + p)]);
+      if (nH > nL) hoop_stress[first + p] = stresses[nH * p + nL];
+    }
+  });
+  sum_forces = load_forces;
+  if (between.size() > nelements) move_points(u);
+  for (std::size_t k = nelements; k < between.size(); k++) {
+    double sizes = 0.0;
+    point_forces.resize(3 * (std::size_t) atom->nmax);
+    between[k]->forces_after(point_motion.data(), point_forces.data(), sizes);
+    const double *const before = between[k]->forces();
+    for (std::size_t j = 0; j < 3 * (std::size_t) atom->nlocal; j++)
+      sum_forces[j] += point_forces[j] - before[j];
+  }
+  scatter(sum_forces.data(), force);
 }

@@ -138,8 +138,8 @@ void Grid::zero()
 
 namespace {
 
-/** Calls move(n). Where n is small it is one that the compiler knows: an inner loop over a few numbers would take twice the
- *  time of their sums. */
+/** Calls move(n). Where n is small it is one that the compiler knows: an inner loop over a few
+ *  numbers would take twice the time of their sums. */
 template <class Move> void with_width(int n, const Move &move)
 {
   switch (n) {

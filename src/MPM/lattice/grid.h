@@ -46,11 +46,11 @@ struct Lattice {
 
 /** The blocks of nodes within reach of the points of this rank, and their node records.
  *
- *  A block holds 4x4x4 nodes in 3d and 8x8 in 2d; block b of an axis holds nodes b*side ...
- *  b*side + side - 1. Node in block: (ix*4+iy)*4+iz in 3d, ix*8+iy in 2d.
- *  A node record has nreal reals; for its layout see transfer/kernels.h. Periodic images are separate
- *  nodes (aliases). Their sums are added to the canonical node and copied back after the solve, so that
- *  no kernel needs to know about periodicity.
+ *  A block holds 4x4x4 nodes in 3d and 8x8 in 2d; block b of an axis holds nodes b*side ... b*side
+ *  + side - 1. Node in block: (ix*4+iy)*4+iz in 3d, ix*8+iy in 2d. A node record has nreal reals;
+ *  for its layout see transfer/kernels.h. Periodic images are separate nodes (aliases). Their sums
+ *  are added to the canonical node and copied back after the solve, so that no kernel needs to know
+ *  about periodicity.
  */
 class Grid {
  public:
@@ -66,8 +66,8 @@ class Grid {
   int side, shift_bits;    ///< nodes along a block side, log2 of it
   std::vector<Block> blocks;
   int nreal = 0;    ///< reals of a node record
-  /** Range of nodes along each axis that are in use: sums and copies skip periodic images outside it. clear()
-   *  resets it to all nodes. */
+  /** Range of nodes along each axis that are in use: sums and copies skip periodic images outside
+   *  it. clear() resets it to all nodes. */
   int reach_low[3], reach_high[3];
 
   explicit Grid(const Lattice &lattice) :
@@ -147,7 +147,8 @@ class Grid {
     return slot < 0 ? -1 : (int64_t) slot * NODES_PER_BLOCK + number(index);
   }
 
-  /** For each node slot*64 + n, its canonical node, which is the node itself if it is no periodic image. */
+  /** For each node slot*64 + n, its canonical node, which is the node itself if it is no periodic
+   *  image. */
   std::vector<int64_t> canonical() const;
 
   int64_t memory_usage() const;

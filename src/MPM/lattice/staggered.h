@@ -23,15 +23,18 @@ inline int cell_below(double t)
 
 /** Velocities and pressures on a staggered (marker-and-cell) lattice, as functions of the place.
  *
- *  Cell i along an axis reaches from node i to node i + 1. Component c of the velocity has its coefficients at the faces
- *  normal to c, where face i is the lower face of cell i; the pressure has its coefficients in the middle of cells. The
- *  basis function of a face is the quadratic B-spline along c times the hat functions along the other axes. The slope of
- *  this spline is the difference of two hats, so that the divergence of the interpolated velocity is the sum over cells
- *  of the product of hats times the net flow through the faces of the cell. If this net flow vanishes for the cells
- *  around a place, the velocity is free of divergence exactly at that place (J.A. Evans, T.J.R. Hughes, J. Comput. Phys.
- *  241 (2013) 141; C. Schroeder, R.R. Chowdhury, T. Shinar, J. Comput. Phys. 468 (2022) 111500).
+ *  Cell i along an axis reaches from node i to node i + 1. Component c of the velocity has its
+ *  coefficients at the faces normal to c, where face i is the lower face of cell i; the pressure
+ *  has its coefficients in the middle of cells. The basis function of a face is the quadratic
+ *  B-spline along c times the hat functions along the other axes. The slope of this spline is the
+ *  difference of two hats, so that the divergence of the interpolated velocity is the sum over
+ *  cells of the product of hats times the net flow through the faces of the cell. If this net flow
+ *  vanishes for the cells around a place, the velocity is free of divergence exactly at that place
+ *  (J.A. Evans, T.J.R. Hughes, J. Comput. Phys. 241 (2013) 141; C. Schroeder, R.R. Chowdhury, T.
+ *  Shinar, J. Comput. Phys. 468 (2022) 111500).
  *
- *  The functions that are nonzero at a place have indices base, base + 1, base + 2 along each axis. */
+ *  The functions that are nonzero at a place have indices base, base + 1, base + 2 along each
+ *  axis. */
 struct StaggeredWeights {
   int base[3];
   double
@@ -55,7 +58,8 @@ struct StaggeredWeights {
     }
   }
 
-  /** Distance along axis d from the place to face, or to the middle of cell, base + k, in spacings. */
+  /** Distance along axis d from the place to face, or to the middle of cell, base + k, in
+   *  spacings. */
   double to_face(int d, int k) const { return k - 0.5 - f[d]; }
   double to_middle(int d, int k) const { return k - f[d]; }
 
@@ -76,14 +80,16 @@ struct StaggeredWeights {
   }
 };
 
-/** Weights of the hats in the middle of cells for a point of finite width, averaged over its width. For points side by
- *  side, wherever they are, the weights times their volumes add up to the integral of each hat over the space that they
- *  fill. The weights reach cells first, first + 1, and first + 2 along each axis. */
+/** Weights of the hats in the middle of cells for a point of finite width, averaged over its width.
+ *  For points side by side, wherever they are, the weights times their volumes add up to the
+ *  integral of each hat over the space that they fill. The weights reach cells first, first + 1,
+ *  and first + 2 along each axis. */
 struct FillingWeights {
   int first[3];
   double share[3][3];
 
-  /** Computes the weights at t, in node spacings from node 0. width: width of the point in spacings, at most 1. */
+  /** Computes the weights at t, in node spacings from node 0. width: width of the point in
+   *  spacings, at most 1. */
   template <int dim> void find(const double *t, double width)
   {
     const double inverse = 1.0 / width;

@@ -9,16 +9,17 @@
 #ifndef MPM_LAW_AXES_H
 #define MPM_LAW_AXES_H
 
-// Axes of a material in the reference configuration, from the vectors and the angle that the user gives.
+// Axes of a material in the reference configuration, from the vectors and the angle that the user
+// gives.
 
 #include <cmath>
 
 namespace MPM_NS::law {
 namespace {
 
-  /** Orthonormal axes from two vectors: axis 1 along a, axis 2 in the plane of a and b, axis 3 normal to
-   *  both. Axes 1 and 2 are then turned about axis 3 by an angle in degrees. axis: the three unit vectors,
-   *  [axis][component]. */
+  /** Orthonormal axes from two vectors: axis 1 along a, axis 2 in the plane of a and b, axis 3
+   *  normal to both. Axes 1 and 2 are then turned about axis 3 by an angle in degrees. axis: the
+   *  three unit vectors, [axis][component]. */
   inline void orthonormal_axes(const double *a, const double *b, double degrees, double axis[3][3])
   {
     const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
@@ -41,7 +42,8 @@ namespace {
     }
   }
 
-  /** Error message if two vectors cannot define axes because they are parallel or zero; otherwise null. */
+  /** Error message if two vectors cannot define axes because they are parallel or zero; otherwise
+   *  null. */
   inline const char *check_axes(const double *a, const double *b)
   {
     double cross2 = 0.0, aa = 0.0, bb = 0.0;

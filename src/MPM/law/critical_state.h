@@ -19,29 +19,31 @@ namespace {
     double p, hard;
   };
 
-  /** Pressure and size of the yield surface after the plastic volume strain x (positive in compression). */
+  /** Pressure and size of the yield surface after the plastic volume strain x (positive in
+   *  compression). */
   struct Compressed {
     double p, dp;      ///< pressure, and its derivative with respect to x
     double p0, dp0;    ///< compressive strength, and its derivative
   };
 
-  /** Bracket of the plastic volume strain x. strong: positive if some strength is left at the end. */
+  /** Bracket of the plastic volume strain x. strong: positive if some strength is left at the
+   *  end. */
   struct CriticalBracket {
     double start, end, strong;
   };
 
-  /** Return mapping of laws with an elliptic yield surface in pressure p and equivalent stress q, which
-   *  hardens with plastic volume strain, and associated flow (K.H. Roscoe, J.B. Burland, in: Engineering
-   *  Plasticity, Cambridge, 1968, p. 535; with tensile strength BETA p0 as in J. Gaume et al., Nat. Commun.
-   *  9 (2018) 3047):
+  /** Return mapping of laws with an elliptic yield surface in pressure p and equivalent stress q,
+   *  which hardens with plastic volume strain, and associated flow (K.H. Roscoe, J.B. Burland, in:
+   *  Engineering Plasticity, Cambridge, 1968, p. 535; with tensile strength BETA p0 as in J. Gaume
+   *  et al., Nat. Commun. 9 (2018) 3047):
    *
    *    q^2 (1 + 2 BETA) + M^2 (p + BETA p0) (p - p0) <= 0
    *
    *  With center p_m, half axes a and b = a M_b, M_b = M/sqrt(1 + 2 BETA), and u = (p - p_m)/a, the
-   *  direction of flow is (x, shear) = (u, sqrt(1 - u^2)/M_b). For a plastic volume strain x the flow rule
-   *  gives q/b = s = q_trial u/(b u + 3 G x/M_b), and the yield surface is s^2 + u^2 = 1. x lies between 0
-   *  and the value at which u = 0. Because 1 - 1/sqrt(s^2 + u^2) is nearly linear in x, Newton's iteration
-   *  within a bracket finds the root, a batch at a time.
+   *  direction of flow is (x, shear) = (u, sqrt(1 - u^2)/M_b). For a plastic volume strain x the
+   *  flow rule gives q/b = s = q_trial u/(b u + 3 G x/M_b), and the yield surface is s^2 + u^2 = 1.
+   *  x lies between 0 and the value at which u = 0. Because 1 - 1/sqrt(s^2 + u^2) is nearly linear
+   *  in x, Newton's iteration within a bracket finds the root, a batch at a time.
    *
    *  Law provides, in addition to Base:
    *    G, Mb (M_b), beta
@@ -77,8 +79,8 @@ namespace {
         const double out = max(q * q - Mb * Mb * up * down, max(-up, -down));
         const double plastic = out > 0.0 ? 1.0 : 0.0, above = k.p - center * k.p0;
         const CriticalBracket at = law.bracket(state, above, center * k.p0);
-        // without strength, x goes to the end, where the stress vanishes, unless the point yields in shear
-        // alone
+        // without strength, x goes to the end, where the stress vanishes, unless the point yields
+        // in shear alone
         const double search = min(out, max(at.strong, min(-above, up))) > 0.0 ? 1.0 : 0.0;
         // where the surface has zero size at the start, the first guess lies inside the bracket
         const double guess = a > 0.0 ? at.start : 0.5 * (at.start + at.end);
@@ -146,16 +148,17 @@ namespace {
 
   enum { CC_G, CC_M, CC_LAMBDA, CC_KAPPA, CC_E0, CC_P0, CC_PC };
 
-  /** Modified Cam-Clay (K.H. Roscoe, J.B. Burland, in: Engineering Plasticity, Cambridge, 1968, p. 535) at
-   *  finite strain (R.I. Borja, C. Tamagnini, Comput. Methods Appl. Mech. Eng. 155 (1998) 73): in Kirchhoff
-   *  stress, with the elastic volume strain v and kappa* = KAPPA/(1 + E0),
+  /** Modified Cam-Clay (K.H. Roscoe, J.B. Burland, in: Engineering Plasticity, Cambridge, 1968, p.
+   *  535) at finite strain (R.I. Borja, C. Tamagnini, Comput. Methods Appl. Mech. Eng. 155 (1998)
+   *  73): in Kirchhoff stress, with the elastic volume strain v and kappa* = KAPPA/(1 + E0),
    *
    *    q^2/M^2 + p (p - pc) <= 0,  p = P0 exp(-v/kappa*),  q = 3 G shear,
    *    ln pc grows by plastic compression over (lambda* - kappa*)
    *
-   *  so that lines of isotropic compression and swelling are straight in ln J over ln p (R. Butterfield,
-   *  Geotechnique 29 (1979) 469). P0 is the pressure of the material when it is created; its energy in this
-   *  state is defined as zero. Flow is associated, see CriticalStateReturn. */
+   *  so that lines of isotropic compression and swelling are straight in ln J over ln p (R.
+   *  Butterfield, Geotechnique 29 (1979) 469). P0 is the pressure of the material when it is
+   *  created; its energy in this state is defined as zero. Flow is associated, see
+   *  CriticalStateReturn. */
   struct LawCamClay : CriticalStateReturn<LawCamClay, InvariantReturn<LawCamClay>> {
     static constexpr const char *name = "camclay";
     static constexpr const char *meaning = "modified Cam-Clay";
@@ -234,15 +237,15 @@ namespace {
     }
   };
 
-  /** Cohesive Cam-Clay (J. Gaume, T. Gast, J. Teran, A. van Herwijnen, C. Jiang, Nat. Commun. 9 (2018)
-   *  3047; J. Wolper et al., ACM Trans. Graph. 38 (2019) 119): elliptic yield surface with tensile strength
-   *  BETA p0 and hardening
+  /** Cohesive Cam-Clay (J. Gaume, T. Gast, J. Teran, A. van Herwijnen, C. Jiang, Nat. Commun. 9
+   *  (2018) 3047; J. Wolper et al., ACM Trans. Graph. 38 (2019) 119): elliptic yield surface with
+   *  tensile strength BETA p0 and hardening
    *
    *    p0 = K sinh(XI max(-alpha, 0)),  alpha = ln of the plastic volume ratio
    *
    *  Here the elasticity is Hencky's, and the flow is associated with an implicit return, see
-   *  CriticalStateReturn. For alpha >= 0 no strength is left: broken material is free of stress until it
-   *  has been compressed again to alpha < 0. */
+   *  CriticalStateReturn. For alpha >= 0 no strength is left: broken material is free of stress
+   *  until it has been compressed again to alpha < 0. */
   struct LawNacc : CriticalStateReturn<LawNacc, HenckyInvariantReturn<LawNacc>> {
     static constexpr const char *name = "nacc";
     static constexpr const char *meaning = "cohesive Cam-Clay: snow, wet sand, soft rock";

@@ -14,8 +14,8 @@
 namespace MPM_NS::law {
 namespace {
 
-// Parameters that all damages have at the end, and history variables that all have at the beginning, in
-// this order. These are macros because lists of declarations cannot be joined.
+// Parameters that all damages have at the end, and history variables that all have at the
+// beginning, in this order. These are macros because lists of declarations cannot be joined.
 #define MPM_AFTER_PARAMETERS after_none, after_pressure, after_friction
 #define MPM_DAMAGE_HISTORY damaged, shear_energy, rest_energy
 
@@ -42,27 +42,27 @@ namespace {
     double mean;    ///< mean stress of the equation of state, positive in tension
   };
 
-  /** Isotropic damage D (L.M. Kachanov 1958; J. Lemaitre, A Course on Damage Mechanics, 1996, ch. 1) on top
-   *  of any equation of state and strength, which see the undamaged stress. It reduces the deviator, and
-   *  the mean stress in tension only:
+  /** Isotropic damage D (L.M. Kachanov 1958; J. Lemaitre, A Course on Damage Mechanics, 1996, ch.
+   *  1) on top of any equation of state and strength, which see the undamaged stress. It reduces
+   *  the deviator, and the mean stress in tension only:
    *
    *    sigma = (1 - D) s + [(1 - D) max(m, 0) + min(m, 0)] I,   s, m: undamaged
    *    w = (1 - D) (w_s + w_t) + w_0
    *
-   *  w_s is the energy of the strength, w_0 that of the equation of state when its pressure was last zero
-   *  or positive, and w_t the rest of the energy of the equation of state. The released energy (w_s + w_t)
-   *  dD is counted as the work FRACTURE; plastic work and its heat are 1 - D times those of the undamaged
-   *  material. Viscous stress is not damaged. A failed point (D = 1) bears shear only by friction,
-   *  sqrt(s:s/2) <= MU p.
+   *  w_s is the energy of the strength, w_0 that of the equation of state when its pressure was
+   *  last zero or positive, and w_t the rest of the energy of the equation of state. The released
+   *  energy (w_s + w_t) dD is counted as the work FRACTURE; plastic work and its heat are 1 - D
+   *  times those of the undamaged material. Viscous stress is not damaged. A failed point (D = 1)
+   *  bears shear only by friction, sqrt(s:s/2) <= MU p.
    *
-   *  Sums over a step use mean values of its two ends: the energy balance has an error of third order in a
-   *  step, and none for a step at whose end everything is lost.
+   *  Sums over a step use mean values of its two ends: the energy balance has an error of third
+   *  order in a step, and none for a step at whose end everything is lost.
    *
    *  Law provides:
    *    Law(parameters, batch)
-   *    grow(batch, history, i, intact): returns the new D of a point that has not failed (a value below the old D
-   *      means no change) and updates the law's own history
-   *    AFTER, an enum value: the index of after_none in its parameters
+   *    grow(batch, history, i, intact): returns the new D of a point that has not failed (a value
+   *    below the old D means no change) and updates the law's own history AFTER, an enum value: the
+   *    index of after_none in its parameters
    */
   template <class Law> struct ScalarDamage : LawDefaults {
     static constexpr bool uses_F = false;

@@ -15,16 +15,16 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Brittle failure at the largest principal stress (W.J.M. Rankine 1858), either at once or with the
-   *  fracture energy GC of a crack that is one cell wide (Z.P. Bazant, B.H. Oh, Mater. Struct. 16 (1983)
-   *  155). Let w be the energy w_s + w_t that damage may release (see ScalarDamage), and w_1 its value when
-   *  sigma_1 reaches the strength. After that the stress drops linearly with the largest r = sqrt(w/w_1)
-   *  reached in tension:
+  /** Brittle failure at the largest principal stress (W.J.M. Rankine 1858), either at once or with
+   *  the fracture energy GC of a crack that is one cell wide (Z.P. Bazant, B.H. Oh, Mater. Struct.
+   *  16 (1983) 155). Let w be the energy w_s + w_t that damage may release (see ScalarDamage), and
+   *  w_1 its value when sigma_1 reaches the strength. After that the stress drops linearly with the
+   *  largest r = sqrt(w/w_1) reached in tension:
    *
    *    D = 1 - (r_f - r) / [r (r_f - 1)],   r_f = GC / (h w_1)
    *
-   *  The work of damage, integral of w dD, is w_1 r_f = GC/h in any state of stress. A point with w_1 >
-   *  GC/h would spend more than that; instead it fails at once when it has stored GC/h.
+   *  The work of damage, integral of w dD, is w_1 r_f = GC/h in any state of stress. A point with
+   *  w_1 > GC/h would spend more than that; instead it fails at once when it has stored GC/h.
    *
    *  With weibull, the strengths of points of reference volume V have the distribution function
    *
@@ -54,7 +54,8 @@ namespace {
       return p.value[GC] > 0.0 ? NRANKINE : p.value[M] > 0.0 ? OPENING : RANDOM;
     }
 
-    /** Draws the random number of a point from its position, independent of the number of processes. */
+    /** Draws the random number of a point from its position, independent of the number of
+     *  processes. */
     static void initialize(const LawParameters &p, const double *x, double *history)
     {
       if (!(p.value[M] > 0.0)) return;
@@ -103,15 +104,15 @@ namespace {
     }
   };
 
-  /** Dynamic fragmentation (D.E. Grady, M.E. Kipp, Int. J. Rock Mech. Min. Sci. 17 (1980) 147): K e^M flaws
-   *  per volume grow with velocity CG at the tensile strain e = sigma_1/E,
+  /** Dynamic fragmentation (D.E. Grady, M.E. Kipp, Int. J. Rock Mech. Min. Sci. 17 (1980) 147): K
+   *  e^M flaws per volume grow with velocity CG at the tensile strain e = sigma_1/E,
    *
    *    d(D^(1/3))/dt = (M + 3)/3 alpha^(1/3) e^(M/3),
    *    alpha = 8 pi CG^3 K / [(M + 1) (M + 2) (M + 3)]
    *
-   *  At constant strain rate D = alpha rate^M t^(M+3), and fragments have the size 6 CG t/(M + 2), where t
-   *  is the time under tension until D = 1 (also H.J. Melosh, E.V. Ryan, E. Asphaug, J. Geophys. Res. 97
-   *  (1992) 14735). The strain is that at the end of the step. */
+   *  At constant strain rate D = alpha rate^M t^(M+3), and fragments have the size 6 CG t/(M + 2),
+   *  where t is the time under tension until D = 1 (also H.J. Melosh, E.V. Ryan, E. Asphaug, J.
+   *  Geophys. Res. 97 (1992) 14735). The strain is that at the end of the step. */
   struct DamageGradyKipp : ScalarDamage<DamageGradyKipp> {
     static constexpr const char *name = "grady/kipp";
     static constexpr const char *meaning = "dynamic fragmentation by growing flaws";

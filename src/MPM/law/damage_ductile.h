@@ -14,8 +14,8 @@
 namespace MPM_NS::law {
 namespace {
 
-  // A ductile law measures the used share of its ductility (row USED of its history, 1: all). The effect of
-  // this share on the stress is the same for all ductile laws.
+  // A ductile law measures the used share of its ductility (row USED of its history, 1: all). The
+  // effect of this share on the stress is the same for all ductile laws.
 
   constexpr Parameter soften_from = {
       "soften from",    "START", "1",
@@ -27,11 +27,11 @@ namespace {
   constexpr HistoryDeclaration ductility_used = {"used", ZERO, "1",
                                                  "share of the ductility that is used"};
 
-  /** Stress as a function of the used share of the ductility. The stress is lost at once when the share
-   *  reaches 1; or linearly from START on; or, from 1 on, linearly with the plastic work of one cell, which
-   *  adds up to GC per area. The crack is one cell wide whatever the spacing h of the nodes (A. Hillerborg,
-   *  M. Modeer, P.-E. Petersson, Cem. Concr. Res. 6 (1976) 773; Z.P. Bazant, B.H. Oh, Mater. Struct. 16
-   *  (1983) 155). */
+  /** Stress as a function of the used share of the ductility. The stress is lost at once when the
+   *  share reaches 1; or linearly from START on; or, from 1 on, linearly with the plastic work of
+   *  one cell, which adds up to GC per area. The crack is one cell wide whatever the spacing h of
+   *  the nodes (A. Hillerborg, M. Modeer, P.-E. Petersson, Cem. Concr. Res. 6 (1976) 773; Z.P.
+   *  Bazant, B.H. Oh, Mater. Struct. 16 (1983) 155). */
   struct Ductile {
     double start, inv_range, per_work;
 
@@ -54,11 +54,12 @@ namespace {
 
   /** Johnson-Cook failure (G.R. Johnson, W.H. Cook, Eng. Fract. Mech. 21 (1985) 31, eq. 7, 8):
    *
-   *    used = sum de/e_f,   e_f = [D1 + D2 exp(D3 m/q)] [1 + D4 ln max(rate/EPSDOT0, 1)] [1 + D5 T*]
+   *    used = sum de/e_f
+   *    e_f = [D1 + D2 exp(D3 m/q)] [1 + D4 ln max(rate/EPSDOT0, 1)] [1 + D5 T*]
    *
-   *  with plastic strain e, undamaged mean stress m and equivalent stress q. The triaxiality m/q is limited
-   *  to 1.5, where according to the citation the formula ends. If e_f is below EFMIN, EFMIN is used in its
-   *  place; fits with D1 < 0 reach values of zero or below at high triaxiality. */
+   *  with plastic strain e, undamaged mean stress m and equivalent stress q. The triaxiality m/q is
+   *  limited to 1.5, where according to the citation the formula ends. If e_f is below EFMIN, EFMIN
+   *  is used in its place; fits with D1 < 0 reach values of zero or below at high triaxiality. */
   struct DamageJohnsonCook : ScalarDamage<DamageJohnsonCook> {
     static constexpr const char *name = "johnson/cook";
     static constexpr const char *meaning = "Johnson-Cook failure strain";

@@ -20,9 +20,9 @@ namespace {
    *
    *    tau^J = 2 mu dev(D) + K tr(D) I,   the integral of tr(D) over a step being ln(J/J_old)
    *
-   *  Because the rate is that of tau, not of sigma, tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) is a stored
-   *  energy whose change equals the stress power on any path. For small strain this is Hooke's law. The
-   *  update starts from the old stress. */
+   *  Because the rate is that of tau, not of sigma, tau_m^2/(2 K) + dev(tau):dev(tau)/(4 mu) is a
+   *  stored energy whose change equals the stress power on any path. For small strain this is
+   *  Hooke's law. The update starts from the old stress. */
   struct LawLinear : LawDefaults, BulkAndShear {
     static constexpr bool uses_F = false;
     static constexpr const char *name = "linear";
@@ -58,8 +58,8 @@ namespace {
       add_mean(b.n, bulk, t);
     }
 
-    /** J d sigma_nn / d epsilon_nn = lambda + 2 mu - tau_nn, with a bound of -tau_nn over all directions n.
-     *  In strong expansion it is negative, and the law has no waves. */
+    /** J d sigma_nn / d epsilon_nn = lambda + 2 mu - tau_nn, with a bound of -tau_nn over all
+     *  directions n. In strong expansion it is negative, and the law has no waves. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawLinear law(p);
@@ -124,8 +124,8 @@ namespace {
       add_mean(b.n, lambda, t);
     }
 
-    /** From the acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the longest
-     *  principal stretch. */
+    /** From the acoustic tensor: J rho c^2 = mu n.b.n + mu + lambda (1 - ln J), largest along the
+     *  longest principal stretch. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawNeoHookean law(p);
@@ -137,8 +137,9 @@ namespace {
                     least);
     }
 
-    /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H in tr b - 3 - 2
-     *  ln J are cancelled analytically, so that small strains keep full relative precision. */
+    /** With H = F - I and det F - 1 = tr H + minors + det H, the terms of first order in H in tr b
+     *  - 3 - 2 ln J are cancelled analytically, so that small strains keep full relative
+     *  precision. */
     MPM_INLINE double stored(const Batch &b, int i) const
     {
       const Displacement H = displacement(b, i);
@@ -224,13 +225,15 @@ namespace {
     }
   };
 
-  /** Hyperelastic solid that is linear in the engineering strains u = V - I, with the left stretch V =
-   *  sqrt(b), except in its change of volume (fixed corotated energy: A. Stomakhin, R. Howes, C. Schroeder,
-   *  J. Teran, Proc. ACM SIGGRAPH/Eurographics Symp. Computer Animation (2012) 25, eq. 7):
+  /** Hyperelastic solid that is linear in the engineering strains u = V - I, with the left stretch
+   *  V = sqrt(b), except in its change of volume (fixed corotated energy: A. Stomakhin, R. Howes,
+   *  C. Schroeder, J. Teran, Proc. ACM SIGGRAPH/Eurographics Symp. Computer Animation (2012) 25,
+   *  eq. 7):
    *
    *    w = mu u:u + lambda/2 (J - 1)^2,   J sigma = 2 mu V u + lambda J (J - 1) I
    *
-   *  With NU = 0, nominal stresses are E times the engineering strains, as in the theory of bars. */
+   *  With NU = 0, nominal stresses are E times the engineering strains, as in the theory of
+   *  bars. */
   struct LawCorotated : IsotropicHyperelastic<LawCorotated>, LameModuli {
     static constexpr const char *name = "corotated";
     static constexpr const char *meaning = "hyperelastic, linear in engineering strain";

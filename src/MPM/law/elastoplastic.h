@@ -9,16 +9,16 @@
 #ifndef MPM_LAW_ELASTOPLASTIC_H
 #define MPM_LAW_ELASTOPLASTIC_H
 
-// Finite-strain elastoplasticity with return mapping in principal logarithmic strains: the common part of
-// the laws of soil, rock and snow.
+// Finite-strain elastoplasticity with return mapping in principal logarithmic strains: the common
+// part of the laws of soil, rock and snow.
 
 #include "law/tensor_function.h"
 
 namespace MPM_NS::law {
 namespace {
 
-// First rows of the history of these laws: be - I, so that small strains keep their digits. This is a macro
-// because lists of declarations cannot be joined.
+// First rows of the history of these laws: be - I, so that small strains keep their digits. This is
+// a macro because lists of declarations cannot be joined.
 #define MPM_ELASTIC_STRAIN_HISTORY                                                          \
   {"elastic_xx", ZERO, "1", "elastic left Cauchy-Green tensor less identity, xx"},          \
       {"elastic_yy", ZERO, "1", "the same, yy"}, {"elastic_zz", ZERO, "1", "the same, zz"}, \
@@ -48,17 +48,17 @@ namespace {
     alignas(64) double work[BATCH];         ///< out: dissipated work per reference volume
   };
 
-  /** Work of a plastic strain increment: the mean of the work by the stresses at the start and the end of
-   *  the step. The old stress counts only if its work in this direction is positive; otherwise the step
-   *  began elastically. */
+  /** Work of a plastic strain increment: the mean of the work by the stresses at the start and the
+   *  end of the step. The old stress counts only if its work in this direction is positive;
+   *  otherwise the step began elastically. */
   MPM_INLINE double plastic_work(double by_old, double by_new)
   {
     return max(0.5 * (max(by_old, 0.0) + by_new), 0.0);
   }
 
   /** Upper bound of the acoustic modulus of Hencky elasticity, J d sigma_nn / d strain_nn: along a
-   *  principal axis it is K + 4/3 G - tau_nn; between two axes G increases to G x coth(x) <= G (1 + x^2/3),
-   *  where x is the difference of their logarithmic strains. */
+   *  principal axis it is K + 4/3 G - tau_nn; between two axes G increases to G x coth(x) <= G (1 +
+   *  x^2/3), where x is the difference of their logarithmic strains. */
   MPM_INLINE double hencky_modulus(double K, double G, double J, const Sym &stress)
   {
     const Sym s = deviator(stress);
@@ -68,8 +68,8 @@ namespace {
                LEAST_MODULUS * (K + (4.0 / 3.0) * G));
   }
 
-  /** Adds the energy K/2 tr^2(e) + G dev(e):dev(e) of logarithmic strains e to w[n]; history: rows of be -
-   *  I. */
+  /** Adds the energy K/2 tr^2(e) + G dev(e):dev(e) of logarithmic strains e to w[n]; history: rows
+   *  of be - I. */
   MPM_INLINE void hencky_energy(const Batch &b, double K, double G, History history, double *w)
   {
     Tensors strain;
@@ -82,20 +82,21 @@ namespace {
     }
   }
 
-  /** Base of laws with F = Fe Fp and the history be = Fe Fe^T (J.C. Simo, Comput. Methods Appl. Mech. Eng.
-   *  99 (1992) 61; E.A. de Souza Neto, D. Peric, D.R.J. Owen, Computational Methods for Plasticity, 2008,
-   *  ch. 14.4). The trial state f be f^T is exact for any rotation. Its logarithmic strain ln(be)/2 is
-   *  returned to the yield surface as in small-strain plasticity, and the axes stay. Stresses of the law
-   *  are Kirchhoff stresses, J times Cauchy. A law provides its own modulus() unless its elasticity is
-   *  Hencky's with Young's modulus and Poisson's ratio as first parameters.
+  /** Base of laws with F = Fe Fp and the history be = Fe Fe^T (J.C. Simo, Comput. Methods Appl.
+   *  Mech. Eng. 99 (1992) 61; E.A. de Souza Neto, D. Peric, D.R.J. Owen, Computational Methods for
+   *  Plasticity, 2008, ch. 14.4). The trial state f be f^T is exact for any rotation. Its
+   *  logarithmic strain ln(be)/2 is returned to the yield surface as in small-strain plasticity,
+   *  and the axes stay. Stresses of the law are Kirchhoff stresses, J times Cauchy. A law provides
+   *  its own modulus() unless its elasticity is Hencky's with Young's modulus and Poisson's ratio
+   *  as first parameters.
    *
-   *  Strains at the start of the step are those of the trial state minus the strain increment along its
-   *  axes; the work of a step is then accurate to third order. */
+   *  Strains at the start of the step are those of the trial state minus the strain increment along
+   *  its axes; the work of a step is then accurate to third order. */
   struct FiniteStrainReturn : LawDefaults {
     static constexpr bool uses_F = false;
 
-    /** Computes the trial state in the history, where it remains if all points stay elastic, and its
-     *  logarithmic strain. */
+    /** Computes the trial state in the history, where it remains if all points stay elastic, and
+     *  its logarithmic strain. */
     static MPM_INLINE void trial_strains(const Batch &b, History history, Tensors &strain)
     {
       MPM_SIMD
@@ -112,8 +113,8 @@ namespace {
     }
   };
 
-  /** Return mapping along principal axes, for any isotropic law. In addition to its declaration, Law
-   *  provides:
+  /** Return mapping along principal axes, for any isotropic law. In addition to its declaration,
+   *  Law provides:
    *    Law(parameters)
    *    stay_elastic(batch, history, strains): computes the stresses and returns true if all points
    *      certainly stay elastic
@@ -121,7 +122,8 @@ namespace {
    *      history starts after be
    *    energy()
    *
-   *  Most bodies yield in a few places only; batches that stay elastic do not need the principal axes. */
+   *  Most bodies yield in a few places only; batches that stay elastic do not need the principal
+   *  axes. */
   template <class Law> struct PrincipalReturn : FiniteStrainReturn {
     static void update(const LawParameters &p, Batch &b, History history)
     {
@@ -150,7 +152,8 @@ namespace {
       double plastic = 0.0;
       MPM_SIMD_SUM(plastic)
       for (int i = 0; i < b.n; i++) {
-        // the axes are written out, as in energy(), because loops over small arrays do not vectorize
+        // the axes are written out, as in energy(), because loops over small arrays do not
+        // vectorize
         const double inv = 1.0 / b.J[i];
         store_rows(history, i,
                    axes.recompose(i, expm1(2.0 * s.strain[0][i]), expm1(2.0 * s.strain[1][i]),
@@ -172,12 +175,12 @@ namespace {
     alignas(64) double flow[BATCH];      ///< out: plastic volume strain, with work -p * flow
   };
 
-  /** Return mapping of laws whose yield surface and flow do not depend on the third invariant and whose
-   *  shear modulus is constant, in terms of the pressure p = -tr(tau)/3 and the equivalent stress q = 3 G
-   *  shear.
+  /** Return mapping of laws whose yield surface and flow do not depend on the third invariant and
+   *  whose shear modulus is constant, in terms of the pressure p = -tr(tau)/3 and the equivalent
+   *  stress q = 3 G shear.
    *
-   *  Law provides G; pressure(v) and volume_energy(v) of the elastic volume strain v; and solve(batch,
-   *  history, states), where history starts after be. */
+   *  Law provides G; pressure(v) and volume_energy(v) of the elastic volume strain v; and
+   *  solve(batch, history, states), where history starts after be. */
   template <class Law> struct InvariantReturn : FiniteStrainReturn {
     static void update(const LawParameters &p, Batch &b, History history)
     {
@@ -233,17 +236,18 @@ namespace {
     }
   };
 
-  /** InvariantReturn with Kirchhoff stress linear in the logarithmic elastic strain (H. Hencky, 1928). */
+  /** InvariantReturn with Kirchhoff stress linear in the logarithmic elastic strain (H. Hencky,
+   *  1928). */
   template <class Law> struct HenckyInvariantReturn : InvariantReturn<Law>, BulkAndShear {
     using BulkAndShear::BulkAndShear;
     MPM_INLINE double pressure(double v) const { return -K * v; }
     MPM_INLINE double volume_energy(double v) const { return 0.5 * K * v * v; }
   };
 
-  /** Separated grains: the volume strain that opened between them without stress ("gap") must close again
-   *  before they carry pressure (A.P. Tampubolon et al., ACM Trans. Graph. 36 (2017) 105, volume correction
-   *  of G. Klar et al., ACM Trans. Graph. 35 (2016) 103). Reduces gap and returns the trial volume strain
-   *  after closing. */
+  /** Separated grains: the volume strain that opened between them without stress ("gap") must close
+   *  again before they carry pressure (A.P. Tampubolon et al., ACM Trans. Graph. 36 (2017) 105,
+   *  volume correction of G. Klar et al., ACM Trans. Graph. 35 (2016) 103). Reduces gap and returns
+   *  the trial volume strain after closing. */
   MPM_INLINE double close_gap(double volume, double &gap)
   {
     const double closed = min(gap, max(-volume, 0.0));

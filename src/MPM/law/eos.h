@@ -85,9 +85,9 @@ namespace {
   };
 
   /** Tait-Murnaghan liquid: p = K/gamma (J^-gamma - 1), but not below the cavitation pressure (F.D.
-   *  Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110 (1994) 399).
-   *  Density_0 c^2 = K J^(1-gamma) also in the cavitated state, so that the time step is small enough when
-   *  the cavity closes. */
+   *  Murnaghan, Proc. Natl. Acad. Sci. 30 (1944) 244; J.J. Monaghan, J. Comput. Phys. 110 (1994)
+   *  399). Density_0 c^2 = K J^(1-gamma) also in the cavitated state, so that the time step is
+   *  small enough when the cavity closes. */
   struct EosTait : Barotropic<EosTait> {
     static constexpr const char *name = "tait";
     static constexpr const char *meaning = "Tait-Murnaghan liquid";

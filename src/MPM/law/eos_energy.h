@@ -29,7 +29,8 @@ namespace {
     static constexpr bool uses_F = false, expands = true;
     enum { ENERGY, HEATED };
 
-    /** Internal energy without the dissipated part, which is counted as plastic and viscous work. */
+    /** Internal energy without the dissipated part, which is counted as plastic and viscous
+     *  work. */
     static void energy(const LawParameters &, const Batch &b, History history, double *w)
     {
       MPM_SIMD
@@ -37,8 +38,8 @@ namespace {
     }
   };
 
-  /** Adds the derivative of -J p to the tangent. by_J, by_heat: derivatives of p with respect to J and to
-   *  the heat of the step. */
+  /** Adds the derivative of -J p to the tangent. by_J, by_heat: derivatives of p with respect to J
+   *  and to the heat of the step. */
   inline void add_pressure(const Batch &b, const double *p, const double *by_J,
                            const double *by_heat, Tangent &t)
   {
@@ -58,8 +59,8 @@ namespace {
     }
   }
 
-  /** Energy at the end of a step whose final pressure is p = cold + gamma E: E = E_old - (p_old + p)/2 dJ +
-   *  heat. */
+  /** Energy at the end of a step whose final pressure is p = cold + gamma E: E = E_old - (p_old +
+   *  p)/2 dJ + heat. */
   struct EndOfStep {
     double gamma, dJ, pold,
         limited;    ///< limited: 1 + gamma dJ/2, but at least 0.1 (violent compression)
@@ -74,8 +75,8 @@ namespace {
     {
       return (Eold - 0.5 * (pold + cold) * dJ + heat) / limited;
     }
-    /** dp/dJ = -slope + gamma dE/dJ with dE/dJ = [-(p_old + p)/2 + slope dJ/2]/limited; slope: -dp/dJ at
-     *  constant E. */
+    /** dp/dJ = -slope + gamma dE/dJ with dE/dJ = [-(p_old + p)/2 + slope dJ/2]/limited; slope:
+     *  -dp/dJ at constant E. */
     MPM_INLINE double by_J(double p, double slope) const
     {
       return gamma / limited * 0.5 * (slope * dJ - pold - p) - slope;
@@ -92,8 +93,8 @@ namespace {
   constexpr Parameter cutoff = limits[0], spall = limits[1];
   constexpr HistoryDeclaration spalled = {"spalled", ZERO, "1", "1 when the material has broken"};
 
-  /** Limit of the tension of an equation of state: no limit; a pressure of at least PMIN; or (spall) no
-   *  tension any more once the pressure has fallen below PSPALL. */
+  /** Limit of the tension of an equation of state: no limit; a pressure of at least PMIN; or
+   *  (spall) no tension any more once the pressure has fallen below PSPALL. */
   struct Tension {
     double pmin;     ///< lowest pressure; minus infinity: no limit
     double after;    ///< pressure that replaces a lower one
@@ -107,8 +108,8 @@ namespace {
     }
   };
 
-  /** Kernels of an equation of state p = cold(J) + gamma(J) E, with the internal energy E per reference
-   *  volume.
+  /** Kernels of an equation of state p = cold(J) + gamma(J) E, with the internal energy E per
+   *  reference volume.
    *
    *  Eos provides:
    *    cold(J), gamma(J)
@@ -122,8 +123,9 @@ namespace {
    *    E = E_old - (p_old + p)/2 (J - J_old) + heat
    *
    *  solved together with p. This is of second order in the strain increment, and one step from the
-   *  reference state ends exactly on the Hugoniot. If the tension limit changes the pressure, the limited
-   *  pressure does the work. History: internal_energy, dissipated, and, with spall, the flag spalled. */
+   *  reference state ends exactly on the Hugoniot. If the tension limit changes the pressure, the
+   *  limited pressure does the work. History: internal_energy, dissipated, and, with spall, the
+   *  flag spalled. */
   template <class Eos> struct LinearInEnergy : InternalEnergy {
     enum { SPALLED = HEATED + 1 };
     static constexpr int nhistory(const LawParameters &p)
@@ -338,9 +340,9 @@ namespace {
 
   /** Kernels of a gas. Law provides gas(parameters).
    *
-   *  Along an isentrope e ~ J^(1 - GAMMA). The update follows this exactly for any increment of J, so that
-   *  no expansion makes the energy negative. Half of the heat of a step is added before the change of
-   *  volume and half after it, which is of second order. */
+   *  Along an isentrope e ~ J^(1 - GAMMA). The update follows this exactly for any increment of J,
+   *  so that no expansion makes the energy negative. Half of the heat of a step is added before the
+   *  change of volume and half after it, which is of second order. */
   template <class Law> struct GasLaw : InternalEnergy {
     static constexpr HistoryDeclaration history[] = {internal_energy(INITIALIZED), dissipated};
 
@@ -396,7 +398,8 @@ namespace {
 
   /** Ideal gas of constant specific heats, p = (GAMMA - 1) density e (for instance E.F. Toro,
    *  Riemann Solvers and Numerical Methods for Fluid Dynamics, 2009, ch. 1). The pressure is
-   *  absolute and positive from the start: points have the mean stress -P0 before the first step. */
+   *  absolute and positive from the start: points have the mean stress -P0 before the first
+   *  step. */
   struct EosIdealGas : GasLaw<EosIdealGas> {
     static constexpr const char *name = "ideal/gas";
     static constexpr const char *meaning = "ideal gas";
@@ -447,17 +450,18 @@ namespace {
     }
   };
 
-  /** Detonation products after Jones, Wilkins and Lee (E.L. Lee, H.C. Hornig, J.W. Kury, UCRL-50422, 1968),
-   *  with programmed burn (M.L. Wilkins, UCRL-7322, 1963; E.L. Giroux, HEMP User's Manual, UCRL-51079,
-   *  1973). With the internal energy E per reference volume:
+  /** Detonation products after Jones, Wilkins and Lee (E.L. Lee, H.C. Hornig, J.W. Kury,
+   *  UCRL-50422, 1968), with programmed burn (M.L. Wilkins, UCRL-7322, 1963; E.L. Giroux, HEMP
+   *  User's Manual, UCRL-51079, 1973). With the internal energy E per reference volume:
    *
    *    p = f [A (1 - OMEGA/(R1 J)) exp(-R1 J) + B (1 - OMEGA/(R2 J)) exp(-R2 J) + OMEGA E / J]
    *    f = D (t - t_light) / (WIDTH h) within 0 and 1, never decreasing
    *
-   *  The detonation reaches a point at t_light: the minimum over all detonation points of the time of the
-   *  detonation point plus its distance over D, for the position at which the material point is created.
-   *  Without detonation points everything has burnt from the start. E starts from E0 and changes only by
-   *  the work of the pressure and by heat: the chemical energy is released once. */
+   *  The detonation reaches a point at t_light: the minimum over all detonation points of the time
+   *  of the detonation point plus its distance over D, for the position at which the material point
+   *  is created. Without detonation points everything has burnt from the start. E starts from E0
+   *  and changes only by the work of the pressure and by heat: the chemical energy is released
+   *  once. */
   struct EosJWL : InternalEnergy {
     static constexpr const char *name = "jwl";
     static constexpr const char *meaning = "Jones-Wilkins-Lee detonation products";
@@ -519,17 +523,18 @@ namespace {
           b * (r2 - w - w / (r2 * J)) * exp(-r2 * J);
     }
 
-    /** Energy of the products at zero temperature: integral of A exp(-R1 J) + B exp(-R2 J) from J to
-     *  infinity. */
+    /** Energy of the products at zero temperature: integral of A exp(-R1 J) + B exp(-R2 J) from J
+     *  to infinity. */
     MPM_INLINE double cold_energy(double J) const
     {
       return a / r1 * exp(-r1 * J) + b / r2 * exp(-r2 * J);
     }
 
-    /** Temperature with a thermal part: that of the products is (E - cold energy)/(density_0 CP), which
-     *  falls along an isentrope as J^-OMEGA; unburnt material keeps its own temperature. before, E: burn
-     *  fraction and internal energy at the start of the step. The heat of the step is subtracted because the
-     *  new internal energy contains it and the thermal part adds it again. */
+    /** Temperature with a thermal part: that of the products is (E - cold energy)/(density_0 CP),
+     *  which falls along an isentrope as J^-OMEGA; unburnt material keeps its own temperature.
+     *  before, E: burn fraction and internal energy at the start of the step. The heat of the step
+     *  is subtracted because the new internal energy contains it and the thermal part adds it
+     *  again. */
     static void find_temperature(const LawParameters &p, const EosJWL &eos, const double *before,
                                  const double *E, Batch &batch, History history)
     {
@@ -595,8 +600,8 @@ namespace {
       add_pressure(batch, pressure, by_J, by_heat, t);
     }
 
-    /** Isentropic -J^2 dp/dJ. While the explosive burns, at least density_0 D^2: the wave is not slower
-     *  than the detonation front, and the pressure is still to rise. */
+    /** Isentropic -J^2 dp/dJ. While the explosive burns, at least density_0 D^2: the wave is not
+     *  slower than the detonation front, and the pressure is still to rise. */
     static void modulus(const LawParameters &p, const Batch &batch, History history, double *k)
     {
       const EosJWL eos(p);

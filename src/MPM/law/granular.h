@@ -16,18 +16,19 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Elastic-perfectly plastic solid with friction and cohesion (D.C. Drucker, W. Prager, Q. Appl. Math. 10
-   *  (1952) 157), in Kirchhoff stress with pressure p and equivalent stress q:
+  /** Elastic-perfectly plastic solid with friction and cohesion (D.C. Drucker, W. Prager, Q. Appl.
+   *  Math. 10 (1952) 157), in Kirchhoff stress with pressure p and equivalent stress q:
    *
    *    q <= M p + k,  -p <= TENSION,  flow (volume, shear) = (M_psi, 1) on the cone
    *
    *  M and k are those of a Mohr-Coulomb material. With M = 6 sin(phi)/(3 - sin(phi)) and k = 6 c
-   *  cos(phi)/(3 - sin(phi)), the strengths in triaxial compression are equal. With "plane", those in plane
-   *  strain are equal for any dilatancy angle: with s = sin(phi), t = sin(psi), and r = sqrt(1 + t^2/3) /
-   *  (1 + s t/3), M = sqrt(3) s r, k = sqrt(3) c cos(phi) r, and M_psi = sqrt(3) t / sqrt(1 + t^2/3).
+   *  cos(phi)/(3 - sin(phi)), the strengths in triaxial compression are equal. With "plane", those
+   *  in plane strain are equal for any dilatancy angle: with s = sin(phi), t = sin(psi), and r =
+   *  sqrt(1 + t^2/3) / (1 + s t/3), M = sqrt(3) s r, k = sqrt(3) c cos(phi) r, and M_psi = sqrt(3)
+   *  t / sqrt(1 + t^2/3).
    *
-   *  The return mapping is in closed form: to the cone, the tension plane, or their intersection. Volume
-   *  strain that opens at the tension plane is stored as "gap", see close_gap(). */
+   *  The return mapping is in closed form: to the cone, the tension plane, or their intersection.
+   *  Volume strain that opens at the tension plane is stored as "gap", see close_gap(). */
   struct LawDruckerPrager : HenckyInvariantReturn<LawDruckerPrager> {
     static constexpr const char *name = "drucker/prager";
     static constexpr const char *meaning = "Drucker-Prager plasticity: sand, soil, concrete";
@@ -92,17 +93,17 @@ namespace {
     }
   };
 
-  /** Dense granular flow with the friction coefficient mu(I) (P. Jop, Y. Forterre, O. Pouliquen, Nature 441
-   *  (2006) 727), elastic below yield (S. Dunatunga, K. Kamrin, J. Fluid Mech. 779 (2015) 483). With the
-   *  shear stress t = q/sqrt(3) and the plastic shear rate g = sqrt(2 D:D),
+  /** Dense granular flow with the friction coefficient mu(I) (P. Jop, Y. Forterre, O. Pouliquen,
+   *  Nature 441 (2006) 727), elastic below yield (S. Dunatunga, K. Kamrin, J. Fluid Mech. 779
+   *  (2015) 483). With the shear stress t = q/sqrt(3) and the plastic shear rate g = sqrt(2 D:D),
    *
    *    t <= mu(I) p,  mu(I) = mu_s + (mu_2 - mu_s) I/(I0 + I),  I = g d / sqrt(p/rho_s)
    *
-   *  at constant volume; rho_s = density/FRACTION is the density of the grains. There is no tension: grains
-   *  that separate are free of stress and close up again, see close_gap().
+   *  at constant volume; rho_s = density/FRACTION is the density of the grains. There is no
+   *  tension: grains that separate are free of stress and close up again, see close_gap().
    *
-   *  Return mapping: for x = G dt g, the difference of trial and final t, (trial - x - mu_s p) (x + A) =
-   *  (mu_2 - mu_s) p x with A = G dt I0 sqrt(p/rho_s)/d is a quadratic equation. */
+   *  Return mapping: for x = G dt g, the difference of trial and final t, (trial - x - mu_s p) (x +
+   *  A) = (mu_2 - mu_s) p x with A = G dt I0 sqrt(p/rho_s)/d is a quadratic equation. */
   struct LawMuI : HenckyInvariantReturn<LawMuI> {
     static constexpr const char *name = "mui";
     static constexpr const char *meaning = "mu(I) rheology of dense granular flow";
@@ -160,17 +161,18 @@ namespace {
     }
   };
 
-  /** Snow (A. Stomakhin, C. Schroeder, L. Chai, J. Teran, A. Selle, ACM Trans. Graph. 32 (2013) 102):
-   *  principal elastic stretches s_a stay between 1 - THETAC and 1 + THETAS, and the rest of the motion is
-   *  plastic. With JE the product of s_a and JP = J/JE,
+  /** Snow (A. Stomakhin, C. Schroeder, L. Chai, J. Teran, A. Selle, ACM Trans. Graph. 32 (2013)
+   *  102): principal elastic stretches s_a stay between 1 - THETAC and 1 + THETAS, and the rest of
+   *  the motion is plastic. With JE the product of s_a and JP = J/JE,
    *
    *    w = h [mu sum (s_a - 1)^2 + lambda/2 (JE - 1)^2],  h = exp(XI (1 - JP))
    *    tau_a = h [2 mu s_a (s_a - 1) + lambda JE (JE - 1)]
    *
-   *  Elastic energy that hardening adds at the present strain is taken from the plastic work. The box of
-   *  stretches is not a yield surface with associated flow: the plastic work is negative where snow at
-   *  THETAS is drawn out under compression from its sides. Limiting the work to positive values would
-   *  violate the balance of energy; another direction of flow would be another law (nacc). */
+   *  Elastic energy that hardening adds at the present strain is taken from the plastic work. The
+   *  box of stretches is not a yield surface with associated flow: the plastic work is negative
+   *  where snow at THETAS is drawn out under compression from its sides. Limiting the work to
+   *  positive values would violate the balance of energy; another direction of flow would be
+   *  another law (nacc). */
   struct LawSnow : PrincipalReturn<LawSnow>, LameModuli {
     static constexpr const char *name = "snow";
     static constexpr const char *meaning = "snow with critical compression and stretch";

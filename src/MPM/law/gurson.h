@@ -15,27 +15,31 @@ namespace MPM_NS::law {
 namespace {
 
   /** Ductile metal with voids (A.L. Gurson, J. Eng. Mater. Technol. 99 (1977) 2; V. Tvergaard, A.
-   *  Needleman, Acta Metall. 32 (1984) 157). With the Cauchy mean stress m, equivalent stress q, porosity
-   *  f, and the flow stress y = SIGMAY (1 + e/E0)^N of the matrix at its plastic strain e,
+   *  Needleman, Acta Metall. 32 (1984) 157). With the Cauchy mean stress m, equivalent stress q,
+   *  porosity f, and the flow stress y = SIGMAY (1 + e/E0)^N of the matrix at its plastic strain e,
    *
    *    (q/y)^2 + 2 Q1 f* cosh(3/2 Q2 m/y) - 1 - (Q1 f*)^2 = 0
    *    f* = f up to FC, then linear to 1/Q1 at FF, where all stress is lost
    *    df = (1 - f) dv + A(e) de,  A = FN/(SN sqrt(2 pi)) exp[-((e - EN)/SN)^2/2] in tension
    *    (1 - f) y de = plastic work per volume
    *
-   *  with associated flow; v is the plastic volume strain. The elasticity is Hencky's, in Kirchhoff stress.
+   *  with associated flow; v is the plastic volume strain. The elasticity is Hencky's, in Kirchhoff
+   *  stress.
    *
-   *  Return mapping (N. Aravas, Int. J. Numer. Meth. Eng. 24 (1987) 1395), implicit in all variables:
-   *  Newton's method from a first guess. The guess is the flow at the point where the path from the old
-   *  stress to the trial stress meets the surface, or, in large steps, the stress at that point.
+   *  Return mapping (N. Aravas, Int. J. Numer. Meth. Eng. 24 (1987) 1395), implicit in all
+   *  variables: Newton's method from a first guess. The guess is the flow at the point where the
+   *  path from the old stress to the trial stress meets the surface, or, in large steps, the stress
+   *  at that point.
    *
-   *  Where Newton's method fails (large steps, points close to failure, voids that vanish), a search
-   *  follows. For given y and nucleation the unknown is z = log(f/f0). From z follow v (1 - f = (1 - f0)
-   *  exp(-v)), m, and two values of q: by the yield surface and by the direction of flow. Their difference
-   *  S changes sign between no volume flow and no mean stress. The root is first bracketed and then
-   *  followed by chords, while y and nucleation are found by secants of the strain of the matrix.
+   *  Where Newton's method fails (large steps, points close to failure, voids that vanish), a
+   *  search follows. For given y and nucleation the unknown is z = log(f/f0). From z follow v (1 -
+   *  f = (1 - f0) exp(-v)), m, and two values of q: by the yield surface and by the direction of
+   *  flow. Their difference S changes sign between no volume flow and no mean stress. The root is
+   *  first bracketed and then followed by chords, while y and nucleation are found by secants of
+   *  the strain of the matrix.
    *
-   *  A point that has failed bears pressure only, and only after the volume that opened ("gap") has closed. */
+   *  A point that has failed bears pressure only, and only after the volume that opened ("gap") has
+   *  closed. */
   struct LawGurson : HenckyInvariantReturn<LawGurson> {
     static constexpr const char *name = "gurson";
     static constexpr const char *meaning = "Gurson-Tvergaard-Needleman: ductile metal with voids";
@@ -97,8 +101,8 @@ namespace {
     {
       return min(f > fc ? fc + slope * (f - fc) : f, limit);
     }
-    /** Nucleation rate A at the strain EN + t SN. For a step it is evaluated at the middle of the strain
-     *  increment. */
+    /** Nucleation rate A at the strain EN + t SN. For a step it is evaluated at the middle of the
+     *  strain increment. */
     MPM_INLINE double nucleation(double t) const
     {
       return fn * inv_sn * 0.39894228040143267794 * exp(-0.5 * t * t);
@@ -114,8 +118,8 @@ namespace {
     MPM_INLINE Surface surface(double f, double M) const
     {
       const double fs = effective(f), b = 1.5 * q2;
-      // from the magnitude of x, because 1 + less has no digits left where the mean stress is far below
-      // zero
+      // from the magnitude of x, because 1 + less has no digits left where the mean stress is far
+      // below zero
       const double x = b * M, less = expm1(min(max(x, -x), 300.0)), inv = 1.0 / (1.0 + less);
       const double size = 0.5 * (less + less * inv), cosh1 = 0.5 * less * less * inv;
       const double sinh = x < 0.0 ? -size : size;
@@ -133,8 +137,8 @@ namespace {
     {
       Guess g;
       const double grown = f0 * expm1(z);
-      g.f = f0 *
-          exp(z);    // f0 + grown has no digits where voids vanish, while cosh is as large as f is small
+      // f0 + grown has no digits where voids vanish, while cosh is as large as f is small
+      g.f = f0 * exp(z);
       const double v = log1p(grown / (1.0 - g.f)), vmax = mt / K;
       g.v = mt > 0.0 ? min(max(v, 0.0), vmax) : max(min(v, 0.0), vmax);
       g.m = mt - K * g.v;
@@ -240,13 +244,14 @@ namespace {
     }
 
    private:
-    /** Newton's method for the plastic volume strain v, the plastic shear strain D, and the increment w of
-     *  the matrix strain. With M = m/y, Q = q/y, and a, half the derivative of the yield function by M,
+    /** Newton's method for the plastic volume strain v, the plastic shear strain D, and the
+     *  increment w of the matrix strain. With M = m/y, Q = q/y, and a, half the derivative of the
+     *  yield function by M,
      *
      *    Q^2 - surface(f, M) = 0,   D a - v Q = 0,   (1 - f) w - M v - Q D = 0
      *
-     *  In: v, D, w are a first guess. Out: the solution with m, q, f; open is 1 for points without a
-     *  reliable solution. Returns the number of these points. */
+     *  In: v, D, w are a first guess. Out: the solution with m, q, f; open is 1 for points without
+     *  a reliable solution. Returns the number of these points. */
     [[gnu::noinline]] double newton(const Batch &b, History history, const double *mt,
                                     const double *qt, const double *active, double *v, double *D,
                                     double *w, double *m, double *q, double *f, double *open) const
@@ -406,9 +411,9 @@ namespace {
       }
     }
 
-    /** z at which S vanishes, between no volume flow (S < 0) and no mean stress (S > 0), until |S| < close
-     *  y, and the inverse slope (chord) there: false position (Illinois method) with bisections. end: z
-     *  without mean stress. */
+    /** z at which S vanishes, between no volume flow (S < 0) and no mean stress (S > 0), until |S|
+     *  < close y, and the inverse slope (chord) there: false position (Illinois method) with
+     *  bisections. end: z without mean stress. */
     [[gnu::noinline]] void bracket(const Batch &b, const double *mt, const double *qt,
                                    const double *f0, const double *y, const double *active,
                                    double *z, double *chord, double *end, double close) const

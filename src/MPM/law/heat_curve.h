@@ -9,7 +9,8 @@
 #ifndef MPM_LAW_HEAT_CURVE_H
 #define MPM_LAW_HEAT_CURVE_H
 
-// Enthalpy of a material whose specific heat depends on temperature or that melts over a range of temperatures.
+// Enthalpy of a material whose specific heat depends on temperature or that melts over a range of
+// temperatures.
 
 #include "law/law.h"
 
@@ -20,25 +21,25 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Enthalpy per mass as a function H(T) of temperature. Between knots the specific heat is linear in T;
-   *  it is constant before the first and after the last knot. (A specific heat given by a formula jumps at
-   *  knots so that the heat from each knot to the next is exact.) The knots are the terms {T, specific
-   *  heat, its slope, H} of the parameters of a thermal part. Where melting occurs at one temperature, a
-   *  knot with zero specific heat marks the end of the solid, and the next knot, at the same temperature,
-   *  the beginning of the melt.
+  /** Enthalpy per mass as a function H(T) of temperature. Between knots the specific heat is linear
+   *  in T; it is constant before the first and after the last knot. (A specific heat given by a
+   *  formula jumps at knots so that the heat from each knot to the next is exact.) The knots are
+   *  the terms {T, specific heat, its slope, H} of the parameters of a thermal part. Where melting
+   *  occurs at one temperature, a knot with zero specific heat marks the end of the solid, and the
+   *  next knot, at the same temperature, the beginning of the melt.
    *
-   *  A point has a temperature and a molten fraction f. Heat changes H, and both follow from H: no heat is
-   *  lost, however long the step. */
+   *  A point has a temperature and a molten fraction f. Heat changes H, and both follow from H: no
+   *  heat is lost, however long the step. */
   struct HeatCurve {
     enum { TEMPERATURE, CAPACITY, SLOPE, ENTHALPY };
 
     const LawParameters &p;
     double melt, latent, over;
 
-    /** Creates the knots of a specific heat c(T) that is constant outside the temperatures T. Between two
-     *  of them it is replaced by a straight line that starts at begin(T1, T2) and rises as much as c does.
-     *  melt, latent, over: melting temperature, heat of fusion (0: none), and range of melting (0: one
-     *  temperature). */
+    /** Creates the knots of a specific heat c(T) that is constant outside the temperatures T.
+     *  Between two of them it is replaced by a straight line that starts at begin(T1, T2) and rises
+     *  as much as c does. melt, latent, over: melting temperature, heat of fusion (0: none), and
+     *  range of melting (0: one temperature). */
     template <class Capacity, class Begin>
     static void make(LawParameters &p, std::vector<double> T, const Capacity &c, const Begin &begin,
                      double melt, double latent, double over)
@@ -87,7 +88,8 @@ namespace {
       while (k + 1 < p.nterms && T >= p.term[k + 1][TEMPERATURE]) k++;
       return p.term[k];
     }
-    /** Molten fraction in equilibrium; 1 at the melting temperature if there is no range of melting. */
+    /** Molten fraction in equilibrium; 1 at the melting temperature if there is no range of
+     *  melting. */
     MPM_INLINE double molten_at(double T) const
     {
       if (!(latent > 0.0)) return 0.0;
@@ -102,17 +104,17 @@ namespace {
       const double slope = d < 0.0 ? 0.0 : k[SLOPE];
       return k[ENTHALPY] + d * (k[CAPACITY] + 0.5 * slope * d) + latent * (molten - molten_at(T));
     }
-    /** Specific heat without the heat of fusion. If that were included, points that begin to melt within a
-     *  step would take heat from the nodes too late, and the error of a melting front would be eight times
-     *  as large. */
+    /** Specific heat without the heat of fusion. If that were included, points that begin to melt
+     *  within a step would take heat from the nodes too late, and the error of a melting front
+     *  would be eight times as large. */
     MPM_INLINE double capacity(double T) const
     {
       const double *const k = below(T), d = T - k[TEMPERATURE];
       const bool melting = over > 0.0 && T >= melt && T < melt + over;
       return k[CAPACITY] + (d < 0.0 ? 0.0 : k[SLOPE] * d) - (melting ? latent / over : 0.0);
     }
-    /** Adds heat per mass to a point: updates its temperature T and its molten fraction (null if the
-     *  material does not melt). */
+    /** Adds heat per mass to a point: updates its temperature T and its molten fraction (null if
+     *  the material does not melt). */
     MPM_INLINE void warm(double heat, double &T, double *molten) const
     {
       const double H = enthalpy(T, molten ? *molten : 0.0) + heat;

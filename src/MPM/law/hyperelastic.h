@@ -51,7 +51,8 @@ namespace {
     alignas(64) double A[6][BATCH];      ///< out: d tau_a / d e_b for ab = 11 22 33 12 13 23
   };
 
-  /** Entry of largest_modulus() for waves along axis b that move points along axis a. ab: index of A_ab. */
+  /** Entry of largest_modulus() for waves along axis b that move points along axis a. ab: index of
+   *  A_ab. */
   MPM_INLINE double pair_modulus(const PrincipalResponse &r, int i, int a, int b, int ab)
   {
     const double d = r.e[a][i] - r.e[b][i], coupling = r.A[ab][i], tau = r.tau[b][i];
@@ -63,17 +64,17 @@ namespace {
 
   /** Largest density_0 c^2 of all waves in an isotropic elastic point, or a slightly larger value.
    *
-   *  For a plane wave with normal n and polarization m, both in principal axes, density_0 c^2 is (R.W.
-   *  Ogden, Non-Linear Elastic Deformations, 1984, ch. 6.3; here with Kirchhoff stresses)
+   *  For a plane wave with normal n and polarization m, both in principal axes, density_0 c^2 is
+   *  (R.W. Ogden, Non-Linear Elastic Deformations, 1984, ch. 6.3; here with Kirchhoff stresses)
    *
    *    sum_a (A_aa - tau_a) n_a^2 m_a^2
    *      + sum_(a != b) [s_ab n_b^2 m_a^2 + (A_ab + s_ab - tau_b) n_a m_a n_b m_b],
    *    s_ab = (tau_a - tau_b) / (exp(2 (e_a - e_b)) - 1),
    *
-   *  a quadratic form in m. The largest eigenvalue of its matrix is at most max_a (M v)_a / v_a for any
-   *  positive v, where M has the absolute values of the off-diagonal entries (L. Collatz, Math. Z. 48
-   *  (1942) 221). With v = |n|, this is a mean over n_b^2 of the entries computed below, whose maximum is
-   *  thus a bound for all n. The bound is exact at small strain. */
+   *  a quadratic form in m. The largest eigenvalue of its matrix is at most max_a (M v)_a / v_a for
+   *  any positive v, where M has the absolute values of the off-diagonal entries (L. Collatz, Math.
+   *  Z. 48 (1942) 221). With v = |n|, this is a mean over n_b^2 of the entries computed below,
+   *  whose maximum is thus a bound for all n. The bound is exact at small strain. */
   MPM_INLINE double largest_modulus(const PrincipalResponse &r, int i)
   {
     const double k0 = r.A[0][i] - r.tau[0][i], k1 = r.A[1][i] - r.tau[1][i];
@@ -84,14 +85,15 @@ namespace {
     return max(max(max(k0, k1), max(k2, k3)), max(k4, k5));
   }
 
-  /** Contribution to the tangent of an isotropic point for shear in the plane of its principal axes a and
-   *  b. With d tau_ab = s_ab l_ab + s_ba l_ba, s_ab = (tau_a - tau_b)/(exp(2 (e_a - e_b)) - 1), the mean of
-   *  s_ab and s_ba is
+  /** Contribution to the tangent of an isotropic point for shear in the plane of its principal axes
+   *  a and b. With d tau_ab = s_ab l_ab + s_ba l_ba, s_ab = (tau_a - tau_b)/(exp(2 (e_a - e_b)) -
+   *  1), the mean of s_ab and s_ba is
    *
    *    m_ab = (tau_a - tau_b)/2 coth(e_a - e_b)
    *
-   *  (G.A. Holzapfel, Nonlinear Solid Mechanics, 2000, ch. 6.6; E.A. de Souza Neto et al., Computational
-   *  Methods for Plasticity, 2008, app. A). The remainder is a rotation of the stress. m_ab is even in e_a
+   *  (G.A. Holzapfel, Nonlinear Solid Mechanics, 2000, ch. 6.6; E.A. de Souza Neto et al.,
+   *  Computational Methods for Plasticity, 2008, app. A). The remainder is a rotation of the
+   *  stress. m_ab is even in e_a
    *  - e_b: where this difference is small, the error of the limit is of second order. */
   MPM_INLINE double shear_tangent(const PrincipalResponse &r, int i, int a, int b, int ab)
   {

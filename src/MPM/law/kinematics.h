@@ -120,7 +120,8 @@ namespace {
     b.stress[2][i] -= p;
   }
 
-  /** Bulk and shear modulus of a law whose first two parameters are Young's modulus and Poisson's ratio. */
+  /** Bulk and shear modulus of a law whose first two parameters are Young's modulus and Poisson's
+   *  ratio. */
   struct BulkAndShear {
     double K, G;
     explicit BulkAndShear(const LawParameters &p) :
@@ -145,8 +146,8 @@ namespace {
     double wx, wy, wz;    ///< axial vector of the skew part of G
   };
 
-  /** G = A (I + A/2)^-1. With B = A/2, (I + B)^-1 B = [(1 + tr B) B - B^2 + det B I] / det(I + B) (theorem
-   *  of Cayley and Hamilton), which keeps full relative precision for small A. */
+  /** G = A (I + A/2)^-1. With B = A/2, (I + B)^-1 B = [(1 + tr B) B - B^2 + det B I] / det(I + B)
+   *  (theorem of Cayley and Hamilton), which keeps full relative precision for small A. */
   MPM_INLINE Increment increment(const Batch &b, int i)
   {
     const double a = 0.5 * b.A[0][i], c = 0.5 * b.A[1][i], d = 0.5 * b.A[2][i];
@@ -267,9 +268,10 @@ namespace {
     return congruence(Rotation(inc).Q, s);
   }
 
-  /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate is the increment in the axes of
-   *  the middle of the step. The result is exact for pure rotation and of second order in general. The form
-   *  Q old Q^T + rate of Hughes and Winget is only of first order when strain and rotation occur together. */
+  /** Jaumann rate over one step: Q (old + rate/2) Q^T + rate/2, where rate is the increment in the
+   *  axes of the middle of the step. The result is exact for pure rotation and of second order in
+   *  general. The form Q old Q^T + rate of Hughes and Winget is only of first order when strain and
+   *  rotation occur together. */
   MPM_INLINE Sym jaumann(const Increment &inc, const Sym &old, const Sym &rate)
   {
     const Sym half = 0.5 * rate;
@@ -294,10 +296,11 @@ namespace {
             a.xx * a.xz + a.xy * a.yz + a.xz * a.zz, a.xy * a.xz + a.yy * a.yz + a.yz * a.zz};
   }
 
-  /** Eigenvalues of a deviator: the one of largest magnitude (first) and half the difference of the two
-   *  others (half). They are exact to round-off, half to 1e-8 of the norm where it vanishes. With r =
-   *  sqrt(d:d/6), the scaled eigenvalues solve t^3 - 3 t - 2 c = 0 with c = det(d)/(2 r^3). The root of
-   *  largest magnitude comes from Newton steps; the others follow from a quadratic equation. */
+  /** Eigenvalues of a deviator: the one of largest magnitude (first) and half the difference of the
+   *  two others (half). They are exact to round-off, half to 1e-8 of the norm where it vanishes.
+   *  With r = sqrt(d:d/6), the scaled eigenvalues solve t^3 - 3 t - 2 c = 0 with c = det(d)/(2
+   *  r^3). The root of largest magnitude comes from Newton steps; the others follow from a
+   *  quadratic equation. */
   struct DeviatorRoots {
     double first, half;
 
@@ -328,8 +331,9 @@ namespace {
     return (1.0 / 3.0) * trace(a) + largest_eigenvalue(deviator(a));
   }
 
-  /** Lower limit of density_0 (wave speed)^2, relative to its value at rest. Far from rest, tangents may be
-   *  zero or negative (there are no waves then), but the time step must stay finite. */
+  /** Lower limit of density_0 (wave speed)^2, relative to its value at rest. Far from rest,
+   *  tangents may be zero or negative (there are no waves then), but the time step must stay
+   *  finite. */
   constexpr double LEAST_MODULUS = 0.01;
 
   /** Upper bound of the largest eigenvalue of a deviator; exact if the other two are equal. */

@@ -18,14 +18,18 @@
 // cannot take a function of one instruction set for that of another.
 
 #include "declare/range.h"
-#include "material/material.h"
+#include "law/batch.h"
 
 #include <cstddef>
 #include <deque>
+#include <limits>
+#include <string>
+#include <vector>
 
 #define MPM_INLINE inline __attribute__((always_inline))
 
-// Loops over the points of a batch, without and with sums; MPM_ISA is set when kernels are compiled.
+// Loops over the points of a batch, without and with sums; MPM_ISA is set when kernels are
+// compiled.
 #ifdef MPM_ISA
 #define MPM_PRAGMA(x) _Pragma(#x)
 #define MPM_SIMD MPM_PRAGMA(omp simd)
@@ -43,9 +47,10 @@ constexpr bool OF_NEW_POINTS = true;    ///< last word of a declaration, see Par
 
 /** Declaration of one parameter.
  *
- *  Positional parameters (those without an option) come first, in this order; those of them that have a
- *  default are given all together or not at all. The other parameters follow the words of their option.
- *  Options may come in any order; options that begin with the same word exclude each other. */
+ *  Positional parameters (those without an option) come first, in this order; those of them that
+ *  have a default are given all together or not at all. The other parameters follow the words of
+ *  their option. Options may come in any order; options that begin with the same word exclude each
+ *  other. */
 struct Parameter {
   const char *option;    ///< word or words that introduce it, "" when positional
   const char *name;      ///< as in the manual
@@ -74,16 +79,16 @@ struct HistoryDeclaration {
 enum { ZERO = -1, ONE = -2, INITIALIZED = -3 };
 constexpr HistoryDeclaration PLASTIC_STRAIN = {"eplastic", ZERO, "1", "equivalent plastic strain"};
 
-/** Parts of the stress: of a law, the parts of the old stress that its update starts from; of a viscosity,
- *  the parts to which it adds. Where these overlap, the material stores the viscous stress separately and
- *  hides it from the law. */
+/** Parts of the stress: of a law, the parts of the old stress that its update starts from; of a
+ *  viscosity, the parts to which it adds. Where these overlap, the material stores the viscous
+ *  stress separately and hides it from the law. */
 enum StressShare { NO_SHARE = 0, PRESSURE = 1, DEVIATOR = 2, WHOLE_STRESS = 3 };
 
 /** Places of laws in a material, in the order of their history variables. */
 enum Part { CLOSED, EOS, STRENGTH, VISCOSITY, DAMAGE, THERMAL, NPARTS };
 
-/** Values of the parameters of a law as its kernels receive them, with what the kernels need from other
- *  parts of the material. */
+/** Values of the parameters of a law as its kernels receive them, with what the kernels need from
+ *  other parts of the material. */
 struct LawParameters {
   static constexpr int MAX = 32, MAX_TERMS = 32, TERM = 4;
   double density;       ///< reference density, in pressure / velocity^2
@@ -108,7 +113,8 @@ inline __attribute__((always_inline)) double *temperature(const LawParameters &p
   return p.temperature < 0 ? nullptr : b.history[p.temperature];
 }
 
-/** Declaration of a law. The first words of a comment name the kind of law to which a member applies. */
+/** Declaration of a law. The first words of a comment name the kind of law to which a member
+ *  applies. */
 struct LawInfo {
   const char *name;
   const char *meaning;
@@ -127,19 +133,21 @@ struct LawInfo {
   int (*nhistory)(const LawParameters &);
   bool uses_speed;    ///< of a viscosity: does update() read batch.speed?
   bool uses_F;        ///< does any kernel read batch.F? Otherwise only J and A
-  /** Of an equation of state: does it have an internal energy that heat raises, so that it expands when
-   *  heated? Then the option 'expansion' is not allowed with it. Unless it also finds the temperature,
-   *  batch.heat contains the heat of conduction and of the damage of the last step when it is updated. */
+  /** Of an equation of state: does it have an internal energy that heat raises, so that it expands
+   *  when heated? Then the option 'expansion' is not allowed with it. Unless it also finds the
+   *  temperature, batch.heat contains the heat of conduction and of the damage of the last step
+   *  when it is updated. */
   bool expands;
-  /** Of an equation of state: does the temperature follow from its internal energy? Then other parts change
-   *  the temperature only through heat, and the first two rows of its history are the internal energy and
-   *  the dissipated part of it. The heat of conduction and of damage is added to both before the update. */
+  /** Of an equation of state: does the temperature follow from its internal energy? Then other
+   *  parts change the temperature only through heat, and the first two rows of its history are the
+   *  internal energy and the dissipated part of it. The heat of conduction and of damage is added
+   *  to both before the update. */
   bool finds_temperature;
-  /** Of a closed law: does it carry no stress across the plane of its axes 1 and 2, so that it can be used
-   *  for surfaces only? */
+  /** Of a closed law: does it carry no stress across the plane of its axes 1 and 2, so that it can
+   *  be used for surfaces only? */
   bool of_surfaces;
-  /** Error message for parameters that are each within range but not valid together; null if they are
-   *  valid. */
+  /** Error message for parameters that are each within range but not valid together; null if they
+   *  are valid. */
   const char *(*check)(const LawParameters &);
   /** Does a law with these parameters need the temperature, and therefore a thermal part? */
   bool (*needs_temperature)(const LawParameters &);
@@ -154,11 +162,11 @@ struct LawInfo {
   /** Of a thermal part: coefficient of linear thermal expansion [1/temperature]. Null: none. */
   double (*expansion)(const LawParameters &);
   int gruneisen;    ///< of a thermal part: index of the Gruneisen parameter, -1: none
-  /** Of a thermal part with expansion: does the material compute the Gruneisen parameter from its bulk
-   *  modulus? Null: never. */
+  /** Of a thermal part with expansion: does the material compute the Gruneisen parameter from its
+   *  bulk modulus? Null: never. */
   bool (*consistent)(const LawParameters &);
-  /** Sets the history of a new point at x. history: the values of the variables, one after the other; in:
-   *  initial values. Null: keep the initial values. */
+  /** Sets the history of a new point at x. history: the values of the variables, one after the
+   *  other; in: initial values. Null: keep the initial values. */
   void (*initialize)(const LawParameters &, const double *x, double *history);
 
   /** Number of history variables, without those of the terms. */
@@ -167,8 +175,8 @@ struct LawInfo {
 
 /** List of the declarations of laws. References to them stay valid when laws are added. */
 using LawList = std::deque<LawInfo>;
-/** Declarations of all laws for one place in a material: those of law/list.h in the order of the lists,
- *  then those of plugins. */
+/** Declarations of all laws for one place in a material: those of law/list.h in the order of the
+ *  lists, then those of plugins. */
 const LawList &declared_laws(Part);
 
 /** Kernels of a law; those that do not apply to it are null.
@@ -181,34 +189,36 @@ const LawList &declared_laws(Part);
  *    - a damage reduces the stress;
  *    - a thermal part turns batch.heat into a change of temperature.
  *
- *  A closed law computes the whole stress. Damage is invisible to the other parts: it corrects the plastic
- *  work and heat that they have recorded. */
+ *  A closed law computes the whole stress. Damage is invisible to the other parts: it corrects the
+ *  plastic work and heat that they have recorded. */
 struct LawKernels {
-  /** Computes stress and history at the end of the step. Adds the work of the batch to batch.work and the
-   *  heat of the points to batch.heat; stores the increments of the equivalent plastic strain in
-   *  batch.plastic. */
+  /** Computes stress and history at the end of the step. Adds the work of the batch to batch.work
+   *  and the heat of the points to batch.heat; stores the increments of the equivalent plastic
+   *  strain in batch.plastic. */
   void (*update)(const LawParameters &, Batch &, History);
 
-  /** Adds to k[n] the contribution of this part to reference density * (wave speed)^2, that is J d sigma_nn
-   *  / d epsilon_nn for a small uniaxial strain on top of the present state. */
+  /** Adds to k[n] the contribution of this part to reference density * (wave speed)^2, that is J d
+   *  sigma_nn / d epsilon_nn for a small uniaxial strain on top of the present state. */
   void (*modulus)(const LawParameters &, const Batch &, History, double *k);
 
-  /** Adds the stored energy to w[n]. A damage receives in w[n] the energy of the equation of state and
-   *  replaces it by that of the damaged material; the energy() of the strength is then not called. */
+  /** Adds the stored energy to w[n]. A damage receives in w[n] the energy of the equation of state
+   *  and replaces it by that of the damaged material; the energy() of the strength is then not
+   *  called. */
   void (*energy)(const LawParameters &, const Batch &, History, double *w);
 
   /** Of a viscosity: raises c[n] so that h / c[n] is the stable time step with this viscosity. */
   void (*raise_speed)(const LawParameters &, const Batch &, History, double *c);
 
-  /** Runs before the other parts. A damage restores the stress of the undamaged material and stores in
-   *  batch.kept the share of the deviator that was left. A thermal part applies the change of temperature
-   *  by compression if stress depends on temperature: stress and heat then belong to the same time, and
-   *  their coupling creates no energy. */
+  /** Runs before the other parts. A damage restores the stress of the undamaged material and stores
+   *  in batch.kept the share of the deviator that was left. A thermal part applies the change of
+   *  temperature by compression if stress depends on temperature: stress and heat then belong to
+   *  the same time, and their coupling creates no energy. */
   void (*prepare)(const LawParameters &, Batch &, History);
 
-  /** Does the same as update(), bit for bit, and adds the contribution of this part to the tangent of the
-   *  step. A part that adds to batch.heat also adds to Tangent::heat; a part whose stress depends on that
-   *  heat reads it there. Null: no analytic tangent. Not called for a thermal part. */
+  /** Does the same as update(), bit for bit, and adds the contribution of this part to the tangent
+   *  of the step. A part that adds to batch.heat also adds to Tangent::heat; a part whose stress
+   *  depends on that heat reads it there. Null: no analytic tangent. Not called for a thermal
+   *  part. */
   void (*tangent)(const LawParameters &, Batch &, History, Tangent &);
 };
 
@@ -269,7 +279,8 @@ struct PluginLaw {
   LawKernels kernels;
 };
 
-/** Adds laws of a plugin to declared_laws(); returns an error message, or an empty string on success. */
+/** Adds laws of a plugin to declared_laws(); returns an error message, or an empty string on
+ *  success. */
 std::string add_laws(const LawVersion &, const PluginLaw *, int n);
 
 // conversion of the struct of a law to its declaration and its kernels

@@ -9,10 +9,11 @@
 #ifndef MPM_LAW_LIST_H
 #define MPM_LAW_LIST_H
 
-// All constitutive laws by family. A new law is a struct in a header and one entry here. The kernels
-// of a family are compiled on their own, once for each instruction set (MPM_ISA: base, v3, v4, with
-// the matching -march): the build writes a file with MPM_LAW_FAMILY(family) for each family. It defines
-// MPM_ONE_FAMILY and MPM_LAWS_<family>, so that it does not depend on the laws of the others.
+// All constitutive laws by family. A new law is a struct in a header and one entry here. The
+// kernels of a family are compiled on their own, once for each instruction set (MPM_ISA: base, v3,
+// v4, with the matching -march): the build writes a file with MPM_LAW_FAMILY(family) for each
+// family. It defines MPM_ONE_FAMILY and MPM_LAWS_<family>, so that it does not depend on the laws
+// of the others.
 
 #include "law/law.h"
 #include "transfer/isa.h"
@@ -111,7 +112,8 @@ MPM_FAMILY(thermal, THERMAL, ThermalAdiabatic, ThermalConducting, ThermalConstan
   X(viscoelastic)           \
   X(frictional) X(soil) X(porous) X(eos) X(strength) X(impact) X(viscosity) X(damage) X(thermal)
 
-/** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the laws of a family in their order. */
+/** Defines mpm_laws_<family>_<isa>(), which returns the kernels of the laws of a family in their
+ *  order. */
 #define MPM_LAW_FAMILY(family)                         \
   namespace MPM_NS {                                   \
     const LawKernels *MPM_OF_ISA(mpm_laws_##family)(); \

@@ -135,8 +135,8 @@ namespace {
     return p.scale + p.scale * p.rest;
   }
 
-  /** Exponential of a number below 700 by linear interpolation between powers of two; at most 7 percent too
-   *  large. */
+  /** Exponential of a number below 700 by linear interpolation between powers of two; at most 7
+   *  percent too large. */
   MPM_INLINE double rough_exp(double x)
   {
     constexpr double SHIFT = 1.5 * 1048576.0 + 1023.0;    // leaves 32 bits behind the point

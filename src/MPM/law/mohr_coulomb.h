@@ -18,7 +18,8 @@ namespace {
     double s1, s2, s3;
   };
 
-  /** Ordered stresses of a batch: trial stresses s1, s2, s3, and their changes c1, c2, c3 by the return. */
+  /** Ordered stresses of a batch: trial stresses s1, s2, s3, and their changes c1, c2, c3 by the
+   *  return. */
   struct OrderedStates {
     alignas(64) double s1[BATCH], s2[BATCH], s3[BATCH], c1[BATCH], c2[BATCH], c3[BATCH];
     alignas(64) double at_apex[BATCH];    ///< 1 or 0
@@ -31,16 +32,16 @@ namespace {
     double sp, cc, dsp, dcc;
   };
 
-  /** Stresses on the surface after the return, and their derivatives by the plastic strain on which the
-   *  strength depends. */
+  /** Stresses on the surface after the return, and their derivatives by the plastic strain on which
+   *  the strength depends. */
   struct MohrCoulombReturn {
     double s1, s2, s3, d1, d2, d3;
     double at_apex;    ///< 1 or 0
   };
 
-  /** Mohr-Coulomb surface s1 - s3 + (s1 + s3) sin(phi) = 2 c cos(phi) with non-associated flow, and the
-   *  return to its plane, to one of the two edges, or to the apex (E.A. de Souza Neto, D. Peric, D.R.J.
-   *  Owen, Computational Methods for Plasticity, 2008, boxes 8.4 to 8.7). */
+  /** Mohr-Coulomb surface s1 - s3 + (s1 + s3) sin(phi) = 2 c cos(phi) with non-associated flow, and
+   *  the return to its plane, to one of the two edges, or to the apex (E.A. de Souza Neto, D.
+   *  Peric, D.R.J. Owen, Computational Methods for Plasticity, 2008, boxes 8.4 to 8.7). */
   struct MohrCoulombSurface {
     double K, G, sin_psi;
 
@@ -61,13 +62,14 @@ namespace {
       return 4.0 * G + ((4.0 / 3.0) * G + 4.0 * K) * sin_psi * sp;
     }
 
-    /** Projects a trial state t outside the surface onto it. Derivatives are computed only with SLOPES. */
+    /** Projects a trial state t outside the surface onto it. Derivatives are computed only with
+     *  SLOPES. */
     template <bool SLOPES>
     MPM_INLINE MohrCoulombReturn project(const Ordered &t, const MohrCoulombStrength &f) const
     {
       const double st = sin_psi, ss = f.sp * st;
-      // change of the three stresses per multiplier of the main plane; for the other two planes it is the
-      // same with stresses exchanged
+      // change of the three stresses per multiplier of the main plane; for the other two planes it
+      // is the same with stresses exchanged
       const double d1 = -2.0 * G * (1.0 + (1.0 / 3.0) * st) - 2.0 * K * st;
       const double d2 = ((4.0 / 3.0) * G - 2.0 * K) * st;
       const double d3 = 2.0 * G * (1.0 - (1.0 / 3.0) * st) - 2.0 * K * st;
@@ -121,7 +123,8 @@ namespace {
       return r;
     }
 
-    /** Equivalent plastic strain of a change of stress: sqrt(2/3 e:e) of the deviator e of the strain. */
+    /** Equivalent plastic strain of a change of stress: sqrt(2/3 e:e) of the deviator e of the
+     *  strain. */
     MPM_INLINE double strain(double a, double b, double c) const
     {
       const double ab = a - b, bc = b - c, ca = c - a;
@@ -141,17 +144,18 @@ namespace {
     }
   };
 
-  /** Elastic-plastic solid with the Mohr-Coulomb surface in Kirchhoff stress (see MohrCoulombSurface) and
-   *  Hencky elasticity. Cohesion and friction angle may soften with the equivalent plastic strain e (A.
-   *  Yerro, E.E. Alonso, N.M. Pinyol, Comput. Geotech. 74 (2016) 26):
+  /** Elastic-plastic solid with the Mohr-Coulomb surface in Kirchhoff stress (see
+   *  MohrCoulombSurface) and Hencky elasticity. Cohesion and friction angle may soften with the
+   *  equivalent plastic strain e (A. Yerro, E.E. Alonso, N.M. Pinyol, Comput. Geotech. 74 (2016)
+   *  26):
    *
    *    c = CR + (C - CR) exp(-RATE e),  phi = PHIR + (PHI - PHIR) exp(-RATE e)
    *
-   *  at the end of the step. The increment of e caused by the return is a function of the increment used
-   *  for the strength; its fixed point is the solution. Newton's method finds it, in one or two steps if
-   *  the strength changes little in a step. The secant method (Illinois variant) within a bracket finds the
-   *  remaining points. Both work on a batch at a time. Volume strain at the apex is stored as "gap", see
-   *  close_gap(). */
+   *  at the end of the step. The increment of e caused by the return is a function of the increment
+   *  used for the strength; its fixed point is the solution. Newton's method finds it, in one or
+   *  two steps if the strength changes little in a step. The secant method (Illinois variant)
+   *  within a bracket finds the remaining points. Both work on a batch at a time. Volume strain at
+   *  the apex is stored as "gap", see close_gap(). */
   struct LawMohrCoulomb : PrincipalReturn<LawMohrCoulomb>, BulkAndShear {
     static constexpr const char *name = "mohr/coulomb";
     static constexpr const char *meaning = "Mohr-Coulomb plasticity with softening: soil, rock";
@@ -209,8 +213,8 @@ namespace {
                         : stay_below<false>(b, history + ELASTIC_STRAIN_ROWS, strain);
     }
 
-    /** Checks against the inner cone of the surface, which is enough for most points, and computes the
-     *  elastic stresses. */
+    /** Checks against the inner cone of the surface, which is enough for most points, and computes
+     *  the elastic stresses. */
     template <bool SOFT>
     MPM_INLINE bool stay_below(Batch &b, History history, const Tensors &strain) const
     {
@@ -315,10 +319,10 @@ namespace {
       }
     }
 
-    /** Solves (strain of the return with D) = D for the increment D of the plastic strain that determines
-     *  the strength, from a guess and without a safeguard. The change of D in the last step is added to the
-     *  stresses through their derivatives. Closes the points that are solved; returns the number of the
-     *  others. */
+    /** Solves (strain of the return with D) = D for the increment D of the plastic strain that
+     *  determines the strength, from a guess and without a safeguard. The change of D in the last
+     *  step is added to the stresses through their derivatives. Closes the points that are solved;
+     *  returns the number of the others. */
     MPM_INLINE double newton(const Batch &b, History history, OrderedStates &o) const
     {
       constexpr int MAX_ITERATIONS = 6;
@@ -361,8 +365,8 @@ namespace {
           r1[BATCH];    // of the last two iterations
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        // strain of the return minus D: not negative at the low end and not positive at the high end, where
-        // there is no strength in shear
+        // strain of the return minus D: not negative at the low end and not positive at the high
+        // end, where there is no strength in shear
         low[i] = r_low[i] = 0.0;
         high[i] = o.open[i] * surface.strain(o.s1[i], o.s2[i], o.s3[i]);
         r_high[i] = -high[i];
@@ -371,9 +375,9 @@ namespace {
         o.more[i] = o.open[i] > 0.0 ? 0.0 : o.more[i];
       }
       for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-        // D = 0 comes first, then a step of the fixed-point iteration, which comes close, then the secant
-        // of the last two iterations, or (every fourth iteration, and if that secant lies outside) the
-        // secant of the bracket
+        // D = 0 comes first, then a step of the fixed-point iteration, which comes close, then the
+        // secant of the last two iterations, or (every fourth iteration, and if that secant lies
+        // outside) the secant of the bracket
         const double late = iteration > 1 ? 1.0 : 0.0, free = iteration % 4 != 1 ? 1.0 : 0.0;
         double busy = 0.0;
         MPM_SIMD_SUM(busy)

@@ -29,8 +29,8 @@ namespace {
     }
   };
 
-  /** Anisotropic solid whose second Piola-Kirchhoff stress is linear in the Green-Lagrange strain (St.
-   *  Venant-Kirchhoff):
+  /** Anisotropic solid whose second Piola-Kirchhoff stress is linear in the Green-Lagrange strain
+   *  (St. Venant-Kirchhoff):
    *
    *    w = E:C:E/2,  J sigma = F (C:E) F^T
    *
@@ -85,8 +85,8 @@ namespace {
           s.yz * e.yz;
     }
 
-    /** Largest density_0 c^2 of small waves in the unstrained material, or a slightly larger value: exact
-     *  if it belongs to a wave along an axis or if the material is isotropic. Derived as in
+    /** Largest density_0 c^2 of small waves in the unstrained material, or a slightly larger value:
+     *  exact if it belongs to a wave along an axis or if the material is isotropic. Derived as in
      *  largest_modulus(). */
     double stiffest() const
     {
@@ -96,8 +96,8 @@ namespace {
       return max(a, b);
     }
 
-    /** l tau + tau l^T + F (C : F^T l F) F^T. The last term has the form of a law in principal axes, with
-     *  the axes of the material as deformed by F in their place. */
+    /** l tau + tau l^T + F (C : F^T l F) F^T. The last term has the form of a law in principal
+     *  axes, with the axes of the material as deformed by F in their place. */
     static void add_tangent(const AnisotropicKirchhoff &law, const Batch &b, Tangent &t)
     {
       alignas(64) double tau[6][BATCH], axes[3][3][BATCH];
@@ -127,8 +127,8 @@ namespace {
       add_frame_tangent(b.n, axes, moduli, t);
     }
 
-    /** Bound of the modulus: with N = F^T n and M = F^T m for a wave with normal n and polarization m, J
-     *  density c^2 = (M N):C:(M N) + n.tau.n. */
+    /** Bound of the modulus: with N = F^T n and M = F^T m for a wave with normal n and polarization
+     *  m, J density c^2 = (M N):C:(M N) + n.tau.n. */
     static MPM_INLINE void bound(const AnisotropicKirchhoff &law, const Batch &b, double *k)
     {
       const double stiff = law.stiffest();
@@ -205,8 +205,8 @@ namespace {
     }
   };
 
-  /** Law with the five constants of a material that has an axis of symmetry, such as the direction of
-   *  fibers. */
+  /** Law with the five constants of a material that has an axis of symmetry, such as the direction
+   *  of fibers. */
   struct LawTransverselyIsotropic : Hyperelastic<LawTransverselyIsotropic>, AnisotropicKirchhoff {
     static constexpr const char *name = "transversely/isotropic";
     static constexpr const char *meaning = "elastic with one axis, linear in Green-Lagrange strain";

@@ -16,7 +16,8 @@
 //   MPM_LAW_PLUGIN(MPM_LAW(EOS, EosQuadratic))
 //
 // with one MPM_LAW(PART, STRUCT) for each law of the plugin, separated by commas. The laws are
-// compiled once, for the instruction set in the options of the compiler (-march=native -fopenmp-simd).
+// compiled once, for the instruction set in the options of the compiler (-march=native
+// -fopenmp-simd).
 
 #ifndef MPM_ISA
 #define MPM_ISA plugin
@@ -26,8 +27,8 @@
 
 namespace MPM_NS {
 
-/** Adds the laws of a plugin to the LAMMPS that loads it; stops with an error of LAMMPS if they do not fit
- *  the package. */
+/** Adds the laws of a plugin to the LAMMPS that loads it; stops with an error of LAMMPS if they do
+ *  not fit the package. */
 void register_laws(void *lmp, const LawVersion &, const PluginLaw *, int n);
 
 }    // namespace MPM_NS

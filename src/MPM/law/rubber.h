@@ -29,8 +29,9 @@ namespace {
       z = add_diagonal((1.0 + change) * left_strain(H), change);
     }
 
-    /** tr(z) = first invariant - 3, which is of second order in the strain. Since det(I + z) = 1, it equals
-     *  minus the sum of the other two invariants of z, which do not cancel for small strains. */
+    /** tr(z) = first invariant - 3, which is of second order in the strain. Since det(I + z) = 1,
+     *  it equals minus the sum of the other two invariants of z, which do not cancel for small
+     *  strains. */
     MPM_INLINE double first() const
     {
       const double t = trace(z);
@@ -38,7 +39,8 @@ namespace {
     }
   };
 
-  /** Adds the response of an Ogden term MU/ALPHA (sum_a exp(ALPHA (e_a - ln J/3)) - 3) of the energy. */
+  /** Adds the response of an Ogden term MU/ALPHA (sum_a exp(ALPHA (e_a - ln J/3)) - 3) of the
+   *  energy. */
   MPM_INLINE void respond_ogden(double mu, double alpha, PrincipalResponse &r, int i)
   {
     const double mean = (1.0 / 3.0) * r.logJ[i];
@@ -56,9 +58,9 @@ namespace {
     r.A[5][i] -= third * (y + z - average);
   }
 
-  /** Energy of the change of volume, U = K/4 (J^2 - 1 - 2 ln J): convex, and infinite for J -> 0 (J.C.
-   *  Simo, T.J.R. Hughes, Computational Inelasticity, 1998, eq. 9.2.5). stress() is J dU/dJ, derivative()
-   *  its derivative with respect to ln J. */
+  /** Energy of the change of volume, U = K/4 (J^2 - 1 - 2 ln J): convex, and infinite for J -> 0
+   *  (J.C. Simo, T.J.R. Hughes, Computational Inelasticity, 1998, eq. 9.2.5). stress() is J dU/dJ,
+   *  derivative() its derivative with respect to ln J. */
   struct VolumeEnergy {
     double K;
     MPM_INLINE double stress(double logJ) const { return 0.5 * K * expm1(2.0 * logJ); }
@@ -66,9 +68,9 @@ namespace {
     MPM_INLINE double stored(double logJ) const { return 0.25 * K * expm1_minus(2.0 * logJ); }
   };
 
-  /** Neo-Hookean solid with uncoupled change of volume and change of shape, in the form that most finite
-   *  element programs use (P.J. Flory, Trans. Faraday Soc. 57 (1961) 829; R.W. Ogden, Non-Linear Elastic
-   *  Deformations, 1984, ch. 7.4):
+  /** Neo-Hookean solid with uncoupled change of volume and change of shape, in the form that most
+   *  finite element programs use (P.J. Flory, Trans. Faraday Soc. 57 (1961) 829; R.W. Ogden,
+   *  Non-Linear Elastic Deformations, 1984, ch. 7.4):
    *
    *    w = G/2 (I1 - 3) + K/2 (J - 1)^2,   I1 = tr b*,  b* = J^(-2/3) b
    *    J sigma = G dev(b*) + K J (J - 1) I
@@ -97,7 +99,8 @@ namespace {
       return 0.5 * G * shape.first() + 0.5 * K * u * u;
     }
 
-    /** With s = G b*: l s + s l^T - 2/3 [tr(l) s + (s:l) I] + [2/9 tr(s) + K J (2 J - 1)] tr(l) I */
+    /** With s = G b*: l s + s l^T - 2/3 [tr(l) s + (s:l) I] + [2/9 tr(s) + K J (2 J - 1)] tr(l)
+     *  I */
     static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
     {
       const LawNeoHookeanSplit law(p);
@@ -181,8 +184,9 @@ namespace {
     }
   };
 
-  /** Rubber after R.W. Ogden, Proc. R. Soc. London A 326 (1972) 565 and 328 (1972) 567, with uncoupled
-   *  change of volume and change of shape; stretches l_a = J^(-1/3) * principal stretches:
+  /** Rubber after R.W. Ogden, Proc. R. Soc. London A 326 (1972) 565 and 328 (1972) 567, with
+   *  uncoupled change of volume and change of shape; stretches l_a = J^(-1/3) * principal
+   *  stretches:
    *
    *    w = sum_p MU_p/ALPHA_p (l_1^ALPHA_p + l_2^ALPHA_p + l_3^ALPHA_p - 3)
    *          + K/4 (J^2 - 1 - 2 ln J)

@@ -19,8 +19,9 @@ namespace {
     alignas(64) double row[6][BATCH];
   };
 
-  /** Spectral decomposition of the symmetric tensors of a batch: sum_a value[a] n_a x n_a, with the unit
-   *  vectors n_a = (vector[0][a], vector[1][a], vector[2][a]). The values are in no particular order. */
+  /** Spectral decomposition of the symmetric tensors of a batch: sum_a value[a] n_a x n_a, with the
+   *  unit vectors n_a = (vector[0][a], vector[1][a], vector[2][a]). The values are in no particular
+   *  order. */
   struct Spectral {
     alignas(64) double value[3][BATCH];
     alignas(64) double vector[3][3][BATCH];    ///< [component][axis][point]
@@ -61,9 +62,10 @@ namespace {
             s.xz * v.x + s.yz * v.y + s.zz * v.z};
   }
 
-  /** Unit vector along the principal axis whose value is farthest from the mean; this axis is well defined
-   *  whatever the other values are. It is normal to the rows of s minus this value; the largest of their
-   *  three cross products is taken. The result is z if z is a principal axis or if all values are equal. */
+  /** Unit vector along the principal axis whose value is farthest from the mean; this axis is well
+   *  defined whatever the other values are. It is normal to the rows of s minus this value; the
+   *  largest of their three cross products is taken. The result is z if z is a principal axis or if
+   *  all values are equal. */
   MPM_INLINE Direction distinct_axis(const Sym &s)
   {
     const Sym d = deviator(s);
@@ -82,10 +84,10 @@ namespace {
     return {tilt * ux, tilt * uy, tilt > 0.0 ? tilt * uz : 1.0};
   }
 
-  /** Decomposition by one axis that is well defined and a Jacobi rotation (C.G.J. Jacobi) of the plane
-   *  normal to it. There are no branches on points, and the result is accurate to round-off even when
-   *  values coincide. Where z is a principal axis of all points, as in plane strain, the rotation is the
-   *  only step. */
+  /** Decomposition by one axis that is well defined and a Jacobi rotation (C.G.J. Jacobi) of the
+   *  plane normal to it. There are no branches on points, and the result is accurate to round-off
+   *  even when values coincide. Where z is a principal axis of all points, as in plane strain, the
+   *  rotation is the only step. */
   MPM_INLINE Spectral::Spectral(int n, const double (*tensors)[BATCH])
   {
     alignas(64) double xx[BATCH], yy[BATCH], xy[BATCH];    // in the plane
@@ -171,8 +173,8 @@ namespace {
     return 0.5 * log1p(max(value, -1.0 + 1e-15));
   }
 
-  /** f b f^T with f = I + A of this step: the left Cauchy-Green tensor b (or its elastic part, as trial
-   *  state) after the motion of the step. It is exact and objective. */
+  /** f b f^T with f = I + A of this step: the left Cauchy-Green tensor b (or its elastic part, as
+   *  trial state) after the motion of the step. It is exact and objective. */
   MPM_INLINE Sym push_forward(const Batch &batch, int i, const Sym &b)
   {
     const double f[9] = {1.0 + batch.A[0][i], batch.A[1][i],       batch.A[2][i],

@@ -82,14 +82,14 @@ namespace {
     double J;        ///< mean volume ratio of the step
   };
 
-  /** Flow stress y at the end of a step as a function of its plastic strain increment D, its first two
-   *  derivatives, and room, the distance of D from the next kink of the function. */
+  /** Flow stress y at the end of a step as a function of its plastic strain increment D, its first
+   *  two derivatives, and room, the distance of D from the next kink of the function. */
   struct FlowStress {
     double y, dy, ddy, room;
   };
 
-  /** Second-order expansion of c x^n about an x0 > 0 that is the same for all D: c x0^n (1 + n z + n (n -
-   *  1)/2 z^2) with z = (x - x0)/x0. It is constant for |z| > 1/2. */
+  /** Second-order expansion of c x^n about an x0 > 0 that is the same for all D: c x0^n (1 + n z +
+   *  n (n - 1)/2 z^2) with z = (x - x0)/x0. It is constant for |z| > 1/2. */
   struct NearPower {
     alignas(64) double at[BATCH];         ///< c x0^n
     alignas(64) double inverse[BATCH];    ///< 1/x0
@@ -111,8 +111,8 @@ namespace {
     }
   };
 
-  /** Change of D in a step of third order (E. Halley, 1694) for r(D) = q - stiff D - Y(D) = 0; far above
-   *  the root, in a Newton step in log D. */
+  /** Change of D in a step of third order (E. Halley, 1694) for r(D) = q - stiff D - Y(D) = 0; far
+   *  above the root, in a Newton step in log D. */
   MPM_INLINE double third_order_step(const TrialState &t, double D, const FlowStress &f)
   {
     const double r = t.q - t.stiff * D - f.y, s = t.stiff + f.dy, square = 2.0 * s * s;
@@ -121,10 +121,10 @@ namespace {
     return r < -0.5 * s * D ? far : near;
   }
 
-  /** Solves r(D) = 0 without any safeguard; one to three steps are enough for nearly all points. open: in:
-   *  1 for points to solve; out: 1 for points without a solution yet, whose D is only a guess. Returns the
-   *  number of open points. With ROUGH, the iteration uses the estimates of Flow until D has a few digits;
-   *  all points stay open, and yield is unchanged. */
+  /** Solves r(D) = 0 without any safeguard; one to three steps are enough for nearly all points.
+   *  open: in: 1 for points to solve; out: 1 for points without a solution yet, whose D is only a
+   *  guess. Returns the number of open points. With ROUGH, the iteration uses the estimates of Flow
+   *  until D has a few digits; all points stay open, and yield is unchanged. */
   template <bool ROUGH, class Flow>
   MPM_INLINE double solve_quickly(const Batch &b, const Flow &flow, History history,
                                   const double *trial, const double *stiff, const double *start,
@@ -159,13 +159,13 @@ namespace {
     return busy;
   }
 
-  /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, where D is the first guess and most an
-   *  upper bound of the solution. Points that solve_quickly() leaves open are solved with a bracket, all
-   *  together. r is convex in D for power hardening (n < 1), for logarithmic or power rate dependence, and
-   *  for both together, and it is concave in log D. Therefore Newton steps in D from the left and in log D
-   *  from the right approach the root from one side only, even with infinite slope at D = 0 and when D is
-   *  smaller than any observable strain (small exponents). The bracket catches all other cases (thermal
-   *  softening). */
+  /** Solves r(D) = q - stiff D - Y(D) = 0 for the points with D > 0, where D is the first guess and
+   *  most an upper bound of the solution. Points that solve_quickly() leaves open are solved with a
+   *  bracket, all together. r is convex in D for power hardening (n < 1), for logarithmic or power
+   *  rate dependence, and for both together, and it is concave in log D. Therefore Newton steps in
+   *  D from the left and in log D from the right approach the root from one side only, even with
+   *  infinite slope at D = 0 and when D is smaller than any observable strain (small exponents).
+   *  The bracket catches all other cases (thermal softening). */
   template <class Flow>
   MPM_INLINE void solve_return(const Batch &b, const Flow &flow, History history,
                                const double *trial, const double *stiff, const double *start,
@@ -218,8 +218,8 @@ namespace {
   }
 
   /** Kernels of a von Mises strength: radial return to the flow stress at the end of the step (M.L.
-   *  Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational Inelasticity,
-   *  1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
+   *  Wilkins, Methods Comput. Phys. 3 (1964) 211; J.C. Simo, T.J.R. Hughes, Computational
+   *  Inelasticity, 1998, ch. 3), with an unknown increment D of the equivalent plastic strain:
    *
    *    r(D) = q - 3 G/J D - Y(D) = 0,   q = trial equivalent stress
    *
@@ -228,11 +228,12 @@ namespace {
    *    shear(i), the shear modulus of the step
    *    start(history, i), the flow stress for D -> 0
    *    stress(history, i, start, trial state, D), which returns Y(D)
-   *    begin(start, D), the flow stress at the beginning of the step; the plastic work is the mean of this and Y, times D
-   *    estimates; if true, also estimate(i, start, trial state, D), which returns about the same as stress() with
-   *      fewer elementary functions, from values that start() has stored
-   *    goes_on; selects the argument start, the stress at which plastic flow begins in this step: false: the result
-   *      of start(); true: the equivalent stress of the last step, unless it was far below
+   *    begin(start, D), the flow stress at the beginning of the step; the plastic work is the mean
+   *    of this and Y, times D estimates; if true, also estimate(i, start, trial state, D), which
+   *    returns about the same as stress() with fewer elementary functions, from values that start()
+   *    has stored goes_on; selects the argument start, the stress at which plastic flow begins in
+   *    this step: false: the result of start(); true: the equivalent stress of the last step,
+   *    unless it was far below
    *
    *  First row of the history: the equivalent plastic strain. */
   template <class Flow> struct RadialReturn : ShearElasticity {
@@ -285,9 +286,9 @@ namespace {
     }
   };
 
-  /** Flow stress with a back stress X/J, for solve_return(). Relative to the elastic trial state of s -
-   *  X/J, plastic flow D is resisted by Y, by the growth C g/J of the back stress along the flow, and by
-   *  the fading of the old back stress, which turns s - w X/J. */
+  /** Flow stress with a back stress X/J, for solve_return(). Relative to the elastic trial state of
+   *  s - X/J, plastic flow D is resisted by Y, by the growth C g/J of the back stress along the
+   *  flow, and by the fading of the old back stress, which turns s - w X/J. */
   template <class Flow> struct KinematicFlow {
     static constexpr bool estimates = Flow::estimates;
     const Flow &flow;
@@ -332,16 +333,16 @@ namespace {
     }
   };
 
-  /** Radial return with the back stress of P.J. Armstrong, C.O. Frederick (CEGB Report RD/B/N731, 1966;
-   *  Mater. High Temp. 24 (2007) 1), which is linear (W. Prager, Proc. IMechE 169 (1955) 41) if GAMMA = 0.
-   *  In addition to its Jaumann rotation, X = J times the back stress changes by
+  /** Radial return with the back stress of P.J. Armstrong, C.O. Frederick (CEGB Report RD/B/N731,
+   *  1966; Mater. High Temp. 24 (2007) 1), which is linear (W. Prager, Proc. IMechE 169 (1955) 41)
+   *  if GAMMA = 0. In addition to its Jaumann rotation, X = J times the back stress changes by
    *
    *    dX = 2/3 C de_p - GAMMA X de,   integrated with constant direction of de_p = de N:
    *    X_new = w X + 2/3 C g N,        w = exp(-GAMMA D), g = (1 - w)/GAMMA
    *
-   *  which is exact on straight paths. N is along s_new - X_new/J, and therefore along s - w X/J of the
-   *  trial state, so that one equation for D remains. The stored energy is 3/4 X:X/C; the rest of the
-   *  plastic work, Y de + 3/2 GAMMA/C X:X de, is dissipated. */
+   *  which is exact on straight paths. N is along s_new - X_new/J, and therefore along s - w X/J of
+   *  the trial state, so that one equation for D remains. The stored energy is 3/4 X:X/C; the rest
+   *  of the plastic work, Y de + 3/2 GAMMA/C X:X de, is dissipated. */
   template <class Flow> struct KinematicReturn : RadialReturn<Flow> {
     static void update(const LawParameters &p, double C, double gamma, Batch &b, History history,
                        History back)
@@ -413,14 +414,16 @@ namespace {
     alignas(64) double end[BATCH], slope[BATCH];    ///< Y(D) and dY/dD
   };
 
-  /** Consistent tangent of RadialReturn and, with KINEMATIC, of KinematicReturn (J.C. Simo, T.J.R. Hughes,
-   *  Computational Inelasticity, 1998, ch. 3.3 and 8; E.A. de Souza Neto, D. Peric, D.R.J. Owen,
-   *  Computational Methods for Plasticity, 2008, ch. 7.4), here for Kirchhoff stresses. With the trial
-   *  deviator t, the rotated back stress X, and xi = t - w X with equivalent value q, the step ends with
+  /** Consistent tangent of RadialReturn and, with KINEMATIC, of KinematicReturn (J.C. Simo, T.J.R.
+   *  Hughes, Computational Inelasticity, 1998, ch. 3.3 and 8; E.A. de Souza Neto, D. Peric, D.R.J.
+   *  Owen, Computational Methods for Plasticity, 2008, ch. 7.4), here for Kirchhoff stresses. With
+   *  the trial deviator t, the rotated back stress X, and xi = t - w X with equivalent value q, the
+   *  step ends with
    *
    *    J s = t - (3 G D/q) xi,   q - 3 G D - J Y(D) - C g(D) = 0,
    *
-   *  where t and X depend on the strain and rotation of the step. Construct it before the update. */
+   *  where t and X depend on the strain and rotation of the step. Construct it before the
+   *  update. */
   template <bool KINEMATIC> struct ReturnTangent {
     const double C, gamma;
     alignas(64) double old[6][BATCH], X[6][BATCH];
@@ -445,8 +448,8 @@ namespace {
       }
     }
 
-    /** After the update: adds the tangent with the shear modulus G, and that of the heat, the share chi of
-     *  the work. */
+    /** After the update: adds the tangent with the shear modulus G, and that of the heat, the share
+     *  chi of the work. */
     void add(double G, double chi, const FlowOfStep &flow, const Batch &b, Tangent &t) const
     {
       const ElasticStep step(b, G, old);

@@ -21,12 +21,14 @@ namespace {
   enum { J2_PERZYNA_S = J2_COWPER_P + 1, J2_PERZYNA_RATE, J2_PERZYNA_M };
   enum { J2_BACK_C = J2_PERZYNA_M + 1, J2_BACK_GAMMA };
 
-  /** Kinds of flow stress at rest over the plastic strain e; a larger number is the size of a table. */
+  /** Kinds of flow stress at rest over the plastic strain e; a larger number is the size of a
+   *  table. */
   enum { HARDENING_LINEAR, HARDENING_POWER, HARDENING_VOCE, SHORT_TABLE = 8 };
   constexpr int LONG_TABLE = LawParameters::MAX_TERMS;
 
-  /** Straight lines between the points of a table, from SIGMAY at e = 0; constant after the last point.
-   *  SIZE: room for points; only inner loops of fixed length allow the outer loop to vectorize. */
+  /** Straight lines between the points of a table, from SIGMAY at e = 0; constant after the last
+   *  point. SIZE: room for points; only inner loops of fixed length allow the outer loop to
+   *  vectorize. */
   template <int SIZE> struct J2Hardening {
     double sigmay;
     double from[SIZE], length[SIZE], slopes[SIZE];
@@ -174,8 +176,8 @@ namespace {
     MPM_INLINE double begin(double start, double) const { return start; }
   };
 
-  /** Von Mises plasticity with isotropic and kinematic hardening and rate dependence. If there is only
-   *  linear isotropic hardening, the return is computed in closed form. */
+  /** Von Mises plasticity with isotropic and kinematic hardening and rate dependence. If there is
+   *  only linear isotropic hardening, the return is computed in closed form. */
   struct StrengthJ2 : ShearElasticity {
     static constexpr const char *name = "j2";
     static constexpr const char *meaning = "von Mises plasticity with hardening and rate";

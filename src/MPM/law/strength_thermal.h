@@ -18,10 +18,10 @@ namespace {
 
   enum { JC_G, JC_A, JC_B, JC_N, JC_C, JC_RATE, JC_M, JC_MELT, JC_REF };
 
-  /** Y = (A + B e^N) (1 + C ln max(rate/EPSDOT0, 1)) (1 - T*^M) with plastic strain e, plastic strain rate
-   *  and temperature at the end of the step. The temperature rises by the heat of the plastic work of the
-   *  step, (Y_start + Y)/2 D, where Y_start is for the old e and T and the present rate; other heat of the
-   *  step acts in the next step. */
+  /** Y = (A + B e^N) (1 + C ln max(rate/EPSDOT0, 1)) (1 - T*^M) with plastic strain e, plastic
+   *  strain rate and temperature at the end of the step. The temperature rises by the heat of the
+   *  plastic work of the step, (Y_start + Y)/2 D, where Y_start is for the old e and T and the
+   *  present rate; other heat of the step acts in the next step. */
   template <bool THERMAL> struct JohnsonCookFlow {
     static constexpr bool goes_on = false, estimates = true;
     double G, A, B, N, C, inv_rate;
@@ -155,9 +155,9 @@ namespace {
    *
    *    f = 1 + A P J^(1/3) - B (T - TREF)
    *
-   *  where pressure P and temperature T are those at the end of the last step, and J = density_0/density.
-   *  There is no strength at and above the melting temperature TM = TM0 exp(2 MA (1 - J)) J^(-2 (MGAMMA -
-   *  MA - 1/3)). f is kept above LEAST. */
+   *  where pressure P and temperature T are those at the end of the last step, and J =
+   *  density_0/density. There is no strength at and above the melting temperature TM = TM0 exp(2 MA
+   *  (1 - J)) J^(-2 (MGAMMA - MA - 1/3)). f is kept above LEAST. */
   struct SteinbergState {
     static constexpr double LEAST = 0.01;
     double A, B, melt, a, power, tref;
@@ -227,9 +227,10 @@ namespace {
     MPM_INLINE double begin(double start, double) const { return start; }
   };
 
-  /** Strength at high pressure (D.J. Steinberg, S.G. Cochran, M.W. Guinan, J. Appl. Phys. 51 (1980) 1498,
-   *  eqs. 1, 2 and 4; D.J. Steinberg, UCRL-MA-106439, 1996), in rate form with the present shear modulus.
-   *  The elastic energy is then the energy that the stress has stored, a history variable. */
+  /** Strength at high pressure (D.J. Steinberg, S.G. Cochran, M.W. Guinan, J. Appl. Phys. 51 (1980)
+   *  1498, eqs. 1, 2 and 4; D.J. Steinberg, UCRL-MA-106439, 1996), in rate form with the present
+   *  shear modulus. The elastic energy is then the energy that the stress has stored, a history
+   *  variable. */
   struct StrengthSteinberg : RadialReturn<SteinbergFlow> {
     static constexpr const char *name = "steinberg";
     static constexpr const char *meaning = "Steinberg-Cochran-Guinan plasticity, with pressure";
@@ -298,10 +299,10 @@ namespace {
   enum { ZA_G, ZA_C0, ZA_BCC_C1, ZA_BCC_C3, ZA_BCC_C4, ZA_BCC_C5, ZA_BCC_N };
   enum { ZA_FCC_C2 = ZA_BCC_N + 1, ZA_FCC_C3, ZA_FCC_C4, ZA_MELT, ZA_RATE };
 
-  /** Y = C0 + (C1 + C2 sqrt(e)) exp(-C3 T + C4 T ln(r/RATE)) + C5 e^N with plastic strain e, plastic strain
-   *  rate r and temperature T at the end of the step; C2 = 0 (bcc) or C1 = C5 = 0 (fcc). The exponent is at
-   *  most 0. T rises by the heat of the plastic work of the step, (Y_begin + Y)/2 D; other heat of the step
-   *  acts in the next step. */
+  /** Y = C0 + (C1 + C2 sqrt(e)) exp(-C3 T + C4 T ln(r/RATE)) + C5 e^N with plastic strain e,
+   *  plastic strain rate r and temperature T at the end of the step; C2 = 0 (bcc) or C1 = C5 = 0
+   *  (fcc). The exponent is at most 0. T rises by the heat of the plastic work of the step,
+   *  (Y_begin + Y)/2 D; other heat of the step acts in the next step. */
   struct ZerilliArmstrongFlow {
     static constexpr bool goes_on = true, estimates = true;
     double G, C0, C1, C2, C3, C4, C5, N;
@@ -368,9 +369,9 @@ namespace {
     MPM_INLINE double begin(double start, double) const { return start; }
   };
 
-  /** Flow stress from thermally activated motion of dislocations (F.J. Zerilli, R.W. Armstrong, J. Appl.
-   *  Phys. 61 (1987) 1816, eqs. 9 and 10). If a melting temperature is given, there is no strength at and
-   *  above it. */
+  /** Flow stress from thermally activated motion of dislocations (F.J. Zerilli, R.W. Armstrong, J.
+   *  Appl. Phys. 61 (1987) 1816, eqs. 9 and 10). If a melting temperature is given, there is no
+   *  strength at and above it. */
   struct StrengthZerilliArmstrong : RadialReturn<ZerilliArmstrongFlow> {
     static constexpr const char *name = "zerilli/armstrong";
     static constexpr const char *meaning = "Zerilli-Armstrong plasticity of bcc and fcc metals";

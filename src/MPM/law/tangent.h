@@ -9,10 +9,10 @@
 #ifndef MPM_LAW_TANGENT_H
 #define MPM_LAW_TANGENT_H
 
-// Functions for tangents that laws share; see Tangent in material/material.h. Loops over the columns of a
-// tangent enclose the loops over the points, so that their indices cost nothing. Functions that contain
-// loops over points are not forced inline: a named tensor in such a loop would then become an array in
-// memory, and the loop would not vectorize.
+// Functions for tangents that laws share; see Tangent in law/batch.h. Loops over the
+// columns of a tangent enclose the loops over the points, so that their indices cost nothing.
+// Functions that contain loops over points are not forced inline: a named tensor in such a loop
+// would then become an array in memory, and the loop would not vectorize.
 
 #include "law/kinematics.h"
 
@@ -51,7 +51,8 @@ namespace {
       }
   }
 
-  /** Adds w s - s w with the skew part w of l, the change of a tensor s that rotates with the material. */
+  /** Adds w s - s w with the skew part w of l, the change of a tensor s that rotates with the
+   *  material. */
   inline void add_turned(int n, const double (*s)[BATCH], Tangent &t)
   {
     for (int c = 0; c < 6; c++)
@@ -69,8 +70,8 @@ namespace {
       }
   }
 
-  /** Derivatives, in the frame of three vectors, of a stress that depends only on the symmetric part of the
-   *  motion. */
+  /** Derivatives, in the frame of three vectors, of a stress that depends only on the symmetric
+   *  part of the motion. */
   struct FrameModuli {
     alignas(64) double A[6][BATCH];    ///< of component aa by l_bb, for ab = 11 22 33 12 13 23
     alignas(64) double m[3][BATCH];    ///< of component ab by l_ab + l_ba, for ab = 12 13 23
@@ -134,13 +135,14 @@ namespace {
     }
   };
 
-  /** Motion of a step in rate form, and its derivatives. The increment at the middle of the step, G = A (I
+  /** Motion of a step in rate form, and its derivatives. The increment at the middle of the step, G
+   *  = A (I
    *  + A/2)^-1, with strain e and rotation W, has the derivative
    *
    *    dG = (I - G/2) l (I + G/2).
    *
-   *  The rotation Q = (I - W/2)^-1 (I + W/2) changes by dQ Q^T = (I - W/2)^-1 dW (I + W/2)^-1, the skew
-   *  matrix of the vector (dw + w x dw/2)/(1 + w.w/4), where w is the axial vector of W. */
+   *  The rotation Q = (I - W/2)^-1 (I + W/2) changes by dQ Q^T = (I - W/2)^-1 dW (I + W/2)^-1, the
+   *  skew matrix of the vector (dw + w x dw/2)/(1 + w.w/4), where w is the axial vector of W. */
   struct StepMotion {
     alignas(64) double G[9][BATCH], Q[9][BATCH];
     alignas(64) double QM[9][BATCH], QN[9][BATCH];    ///< Q (I - G/2), Q (I + G/2)^T
@@ -245,9 +247,9 @@ namespace {
     }
   };
 
-  /** Deviator of the Kirchhoff stress after an elastic step in rate form with the shear modulus G (see
-   *  jaumann()), and its derivative. Only the rotated part of the stress depends on the rotation of the
-   *  step. */
+  /** Deviator of the Kirchhoff stress after an elastic step in rate form with the shear modulus G
+   *  (see jaumann()), and its derivative. Only the rotated part of the stress depends on the
+   *  rotation of the step. */
   struct ElasticStep : StepMotion {
     double shear;
     alignas(64) double turned[6][BATCH];    ///< Q (old + G dev(e)) Q^T

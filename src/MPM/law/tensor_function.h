@@ -9,18 +9,18 @@
 #ifndef MPM_LAW_TENSOR_FUNCTION_H
 #define MPM_LAW_TENSOR_FUNCTION_H
 
-// Logarithm and exponential of symmetric tensors, a batch at a time. Near the identity, where the elastic
-// strains of solids lie, they are computed as polynomials of the tensor. Whole laws are several times
-// faster this way than with principal axes.
+// Logarithm and exponential of symmetric tensors, a batch at a time. Near the identity, where the
+// elastic strains of solids lie, they are computed as polynomials of the tensor. Whole laws are
+// several times faster this way than with principal axes.
 
 #include "law/spectral.h"
 
 namespace MPM_NS::law {
 namespace {
 
-  /** c g(c) for a polynomial g; coefficients from the highest power down. By the theorem of Cayley and
-   *  Hamilton, c^3 = I1 c^2 - I2 c + I3, so that Horner's scheme needs only three numbers: the factors of
-   *  I, c, and c^2. */
+  /** c g(c) for a polynomial g; coefficients from the highest power down. By the theorem of Cayley
+   *  and Hamilton, c^3 = I1 c^2 - I2 c + I3, so that Horner's scheme needs only three numbers: the
+   *  factors of I, c, and c^2. */
   template <int N> MPM_INLINE Sym tensor_polynomial(const double (&g)[N], const Sym &c)
   {
     const double I1 = trace(c), I2 = minors(c), I3 = determinant(c);
@@ -36,8 +36,8 @@ namespace {
     return add_diagonal(k1 * c + k2 * square(c), k0);
   }
 
-  // Chebyshev fits of log(1 + x)/(2 x) and (exp(x) - 1)/x made with mpmath (chebyfit); their error is below
-  // 5e-17 up to these norms
+  // Chebyshev fits of log(1 + x)/(2 x) and (exp(x) - 1)/x made with mpmath (chebyfit); their error
+  // is below 5e-17 up to these norms
   constexpr double HALF_LOG_RANGE = 0.2, EXP_RANGE = 0.5;
   constexpr double HALF_LOG[] = {-0.036101456703228674,
                                  0.03846750749568118,
@@ -68,8 +68,8 @@ namespace {
                                       0.5,
                                       1.0};
 
-  /** f(c) for the points of a batch: by the polynomial c g(c) where the norm of c is at most range, by
-   *  principal axes elsewhere. c and out may be the same. */
+  /** f(c) for the points of a batch: by the polynomial c g(c) where the norm of c is at most range,
+   *  by principal axes elsewhere. c and out may be the same. */
   template <int N, class Function>
   MPM_INLINE void tensor_function(int n, const double (&g)[N], double range, Function f,
                                   const double (*c)[BATCH], double (*out)[BATCH])

@@ -49,18 +49,19 @@ namespace {
    *
    *    density_0 CP dT = dq - density_0 CP GAMMA T dJ
    *
-   *  with the heat dq of the step per reference volume: the share CHI of the plastic work (G.I. Taylor, H.
-   *  Quinney, Proc. R. Soc. London A 143 (1934) 307), and all viscous work. The second term is the change
-   *  along an isentrope if density * Gruneisen parameter is constant, T ~ exp(GAMMA (1 - J)). Strengths use
-   *  the temperature at the end of the step.
+   *  with the heat dq of the step per reference volume: the share CHI of the plastic work (G.I.
+   *  Taylor, H. Quinney, Proc. R. Soc. London A 143 (1934) 307), and all viscous work. The second
+   *  term is the change along an isentrope if density * Gruneisen parameter is constant, T ~
+   *  exp(GAMMA (1 - J)). Strengths use the temperature at the end of the step.
    *
-   *  With melting, the temperature stays at TMELT until the molten fraction f, LATENT df = CP dT, has gone
-   *  from 0 to 1 (on cooling, back to 0), or it rises from TMELT to TMELT + DT meanwhile. In the latter
-   *  case, and if CP depends on temperature, the temperature follows from the enthalpy (HeatCurve).
+   *  With melting, the temperature stays at TMELT until the molten fraction f, LATENT df = CP dT,
+   *  has gone from 0 to 1 (on cooling, back to 0), or it rises from TMELT to TMELT + DT meanwhile.
+   *  In the latter case, and if CP depends on temperature, the temperature follows from the
+   *  enthalpy (HeatCurve).
    *
-   *  With expansion, the second term is applied before the stress of the step, which depends on it. A GAMMA
-   *  that follows from the expansion is that of the given CP and varies as the inverse of the specific
-   *  heat: dp/dT at constant volume, 3 K ALPHA, stays constant.
+   *  With expansion, the second term is applied before the stress of the step, which depends on it.
+   *  A GAMMA that follows from the expansion is that of the given CP and varies as the inverse of
+   *  the specific heat: dp/dT at constant volume, 3 K ALPHA, stays constant.
    *
    *  MORE: number of parameters between T0 and CHI. */
   template <int MORE> struct ThermalByWork : LawDefaults {

@@ -14,9 +14,10 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Speed c, raised for the shear viscosity mu and the bulk viscosity zeta. The stable step of explicit
-   *  integration with damping is dt = h / (sqrt(c^2 + a^2) + a) with a = (4/3 mu + zeta) / (density h), the
-   *  central-difference limit (2/omega)(sqrt(1 + xi^2) - xi) with omega = 2 c/h. */
+  /** Speed c, raised for the shear viscosity mu and the bulk viscosity zeta. The stable step of
+   *  explicit integration with damping is dt = h / (sqrt(c^2 + a^2) + a) with a = (4/3 mu + zeta) /
+   *  (density h), the central-difference limit (2/omega)(sqrt(1 + xi^2) - xi) with omega = 2
+   *  c/h. */
   MPM_INLINE double damped_speed(const LawParameters &p, const Batch &b, int i, double c, double mu,
                                  double zeta)
   {
@@ -24,8 +25,8 @@ namespace {
     return std::sqrt(c * c + a * a) + a;
   }
 
-  /** Newtonian viscosity: adds 2 MU dev(D) + ZETA tr(D) I, where D is the strain rate at the middle of the
-   *  step. With the elasticity of a solid it forms a Kelvin-Voigt element. */
+  /** Newtonian viscosity: adds 2 MU dev(D) + ZETA tr(D) I, where D is the strain rate at the middle
+   *  of the step. With the elasticity of a solid it forms a Kelvin-Voigt element. */
   struct ViscosityNewtonian : LawDefaults {
     static constexpr bool uses_F = false;
     static constexpr const char *name = "newtonian";
@@ -123,7 +124,8 @@ namespace {
       b.work[VISCOUS] += viscous;
     }
 
-    /** Accounts for the linear term only; the safety factor of the time step covers the quadratic term. */
+    /** Accounts for the linear term only; the safety factor of the time step covers the quadratic
+     *  term. */
     static void raise_speed(const LawParameters &p, const Batch &b, History, double *c)
     {
       const double xi = p.value[1], factor = std::sqrt(1.0 + xi * xi) + xi;

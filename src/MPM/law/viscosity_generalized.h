@@ -21,8 +21,8 @@ namespace {
   }
 
   /** Kernels of a generalized Newtonian fluid (R.B. Bird, R.C. Armstrong, O. Hassager, Dynamics of
-   *  Polymeric Liquids 1, 1987, ch. 4): adds 2 eta dev(D), where the apparent viscosity eta depends on the
-   *  shear rate sqrt(2 dev(D):dev(D)) and D is the strain rate at the middle of the step.
+   *  Polymeric Liquids 1, 1987, ch. 4): adds 2 eta dev(D), where the apparent viscosity eta depends
+   *  on the shear rate sqrt(2 dev(D):dev(D)) and D is the strain rate at the middle of the step.
    *
    *  Fluid provides:
    *    Fluid(parameters)
@@ -97,8 +97,8 @@ namespace {
     }
   };
 
-  /** Bingham fluid (E.C. Bingham, Fluidity and Plasticity, 1922), in the bi-viscous form of
-   *  E.J. O'Donovan, R.I. Tanner, J. Non-Newtonian Fluid Mech. 15 (1984) 75: at the shear rate g the
+  /** Bingham fluid (E.C. Bingham, Fluidity and Plasticity, 1922), in the bi-viscous form of E.J.
+   *  O'Donovan, R.I. Tanner, J. Non-Newtonian Fluid Mech. 15 (1984) 75: at the shear rate g the
    *  equivalent shear stress is
    *
    *    tau = min(MUMAX g, TAUY + MU g)
@@ -161,8 +161,8 @@ namespace {
     }
   };
 
-  /** Herschel-Bulkley fluid (W.H. Herschel, R. Bulkley, Kolloid-Z. 39 (1926) 291), with a largest viscosity
-   *  as in the Bingham fluid: tau = min(MUMAX g, TAUY + K g^N). */
+  /** Herschel-Bulkley fluid (W.H. Herschel, R. Bulkley, Kolloid-Z. 39 (1926) 291), with a largest
+   *  viscosity as in the Bingham fluid: tau = min(MUMAX g, TAUY + K g^N). */
   struct ViscosityHerschelBulkley : GeneralizedNewtonian<ViscosityHerschelBulkley>, PowerOfRate {
     static constexpr const char *name = "herschel/bulkley";
     static constexpr const char *meaning = "Herschel-Bulkley fluid, bi-viscous";

@@ -15,23 +15,23 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Maxwell elements parallel to the rest of the material: a Prony series G_k exp(-t/TAU_k) of the shear
-   *  modulus at finite strain.
+  /** Maxwell elements parallel to the rest of the material: a Prony series G_k exp(-t/TAU_k) of the
+   *  shear modulus at finite strain.
    *
-   *  Each element has a strain z = c - I, where c is the elastic left Cauchy-Green tensor of the change of
-   *  shape. c follows the motion like b* = J^(-2/3) b, and z relaxes to zero (J. Lubliner, Mech. Res.
-   *  Commun. 12 (1985) 93, in spatial form):
+   *  Each element has a strain z = c - I, where c is the elastic left Cauchy-Green tensor of the
+   *  change of shape. c follows the motion like b* = J^(-2/3) b, and z relaxes to zero (J.
+   *  Lubliner, Mech. Res. Commun. 12 (1985) 93, in spatial form):
    *
    *    upper convected rate of c (isochoric part of the motion) = -(c - I)/TAU
    *    J sigma = G dev(c),   w = G/2 (tr c - 3 - ln det c)
    *    dissipation rate = G/(2 TAU) (tr c + tr c^-1 - 6) >= 0
    *
-   *  In fast motion an element is the neo-Hookean solid G/2 (tr b* - 3), in slow motion a viscosity G TAU;
-   *  at small strain it is linearly viscoelastic. The equation of c is linear in the reference frame. It is
-   *  integrated there with the exponential function and linear interpolation of the tensor to which c
-   *  relaxes. The update is of second order, exact for small strain at constant rate, and stable for any
-   *  step; a superposed rotation only rotates the stress. With the isochoric part f of the motion of the
-   *  step, and x = dt/TAU,
+   *  In fast motion an element is the neo-Hookean solid G/2 (tr b* - 3), in slow motion a viscosity
+   *  G TAU; at small strain it is linearly viscoelastic. The equation of c is linear in the
+   *  reference frame. It is integrated there with the exponential function and linear interpolation
+   *  of the tensor to which c relaxes. The update is of second order, exact for small strain at
+   *  constant rate, and stable for any step; a superposed rotation only rotates the stress. With
+   *  the isochoric part f of the motion of the step, and x = dt/TAU,
    *
    *    z <- exp(-x) f z f^T + (1 - exp(-x))/x (f f^T - I)
    */
@@ -73,8 +73,8 @@ namespace {
         const History h = history + 6 * k;
         const double G = p.term[k][0], x = b.dt / p.term[k][1];
         const double decay = exp(-x), gain = x > 0.0 ? -expm1(-x) / x : 1.0;
-        // weights of both ends in the integral of the dissipation: accurate for small steps, for relaxation
-        // in one large step, and for steady flow
+        // weights of both ends in the integral of the dissipation: accurate for small steps, for
+        // relaxation in one large step, and for steady flow
         const double first = 0.5 * (1.0 - decay), second = x - first;
         MPM_SIMD_SUM(viscous)
         for (int i = 0; i < b.n; i++) {
@@ -93,8 +93,9 @@ namespace {
       b.work[VISCOUS] += viscous;
     }
 
-    /** The terms of z are convected with the isochoric part of the motion: with y = z + (1 - exp(-x))/x I,
-     *  dz = l y + y l^T - 2/3 tr(l) y. The derivative of excess() is dz:(I - c^-2). */
+    /** The terms of z are convected with the isochoric part of the motion: with y = z + (1 -
+     *  exp(-x))/x I, dz = l y + y l^T - 2/3 tr(l) y. The derivative of excess() is dz:(I -
+     *  c^-2). */
     static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
     {
       update(p, b, history);

@@ -14,19 +14,19 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Fabric of two families of yarns, warp and weft, that cross at pins. With the stretches lambda of the
-   *  yarns and the change gamma of the angle theta between them,
+  /** Fabric of two families of yarns, warp and weft, that cross at pins. With the stretches lambda
+   *  of the yarns and the change gamma of the angle theta between them,
    *
    *    w = E1 <lambda1 - 1>^2/2 + E2 <lambda2 - 1>^2/2 + (integral of M over gamma),
    *    J sigma = sum_k E_k <lambda_k - 1> lambda_k a_k a_k
    *              + M/sin(theta) [a_1 a_2 + a_2 a_1 - cos(theta) (a_1 a_1 + a_2 a_2)]
    *
-   *  where a_k are unit vectors along the deformed yarns, which rotate like material lines and do not stay
-   *  normal to each other (X.Q. Peng, J. Cao, Composites A 36 (2005) 859; M.J. King, P. Jearanaisilawong,
-   *  S. Socrate, Int. J. Solids Struct. 42 (2005) 3867). Yarns bear tension only. The moment M per
-   *  reference volume is G gamma, with another modulus beyond the locking angle. The warp is along axis 1
-   *  of the reference configuration, and the weft in the plane of axes 1 and 2. No stress acts across this
-   *  plane, whatever the stretch normal to it. */
+   *  where a_k are unit vectors along the deformed yarns, which rotate like material lines and do
+   *  not stay normal to each other (X.Q. Peng, J. Cao, Composites A 36 (2005) 859; M.J. King, P.
+   *  Jearanaisilawong, S. Socrate, Int. J. Solids Struct. 42 (2005) 3867). Yarns bear tension only.
+   *  The moment M per reference volume is G gamma, with another modulus beyond the locking angle.
+   *  The warp is along axis 1 of the reference configuration, and the weft in the plane of axes 1
+   *  and 2. No stress acts across this plane, whatever the stretch normal to it. */
   struct LawWoven : LawDefaults {
     static constexpr const char *name = "woven";
     static constexpr const char *meaning = "fabric of two families of yarns, for surfaces";
@@ -54,8 +54,8 @@ namespace {
     {
     }
 
-    /** Stretch and energy of a yarn with the Green-Lagrange strain x, and first and second derivative of
-     *  the energy by x. */
+    /** Stretch and energy of a yarn with the Green-Lagrange strain x, and first and second
+     *  derivative of the energy by x. */
     struct Yarn {
       double stretch, energy, first, second;
 
@@ -70,12 +70,13 @@ namespace {
       }
     };
 
-    /** Angle between the yarns of a point: cosine c, sine s, and change gamma (positive when the angle
-     *  becomes smaller). */
+    /** Angle between the yarns of a point: cosine c, sine s, and change gamma (positive when the
+     *  angle becomes smaller). */
     struct Angle {
       double c, s, gamma;
 
-      /** z: a_1 (F^T F - I) a_2 / 2 with the directions at rest; stretches: product of both stretches. */
+      /** z: a_1 (F^T F - I) a_2 / 2 with the directions at rest; stretches: product of both
+       *  stretches. */
       MPM_INLINE Angle(const LawWoven &law, double z, double stretches)
       {
         c = max(-1.0, min(1.0, (law.c0 + 2.0 * z) / stretches));
@@ -154,9 +155,9 @@ namespace {
       }
     }
 
-    /** A wave with normal n stretches the yarns by at most sum_k E_k lambda_k^2 (n a_k)^2, taut or not; the
-     *  largest value over n is an eigenvalue. Shear adds its larger modulus at small strain, and the moment
-     *  adds a term from the rotation of the yarns. */
+    /** A wave with normal n stretches the yarns by at most sum_k E_k lambda_k^2 (n a_k)^2, taut or
+     *  not; the largest value over n is an eigenvalue. Shear adds its larger modulus at small
+     *  strain, and the moment adds a term from the rotation of the yarns. */
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
     {
       const LawWoven law(p);

@@ -106,7 +106,8 @@ bool FixMPMAbsorb::absorbs(int i) const
   return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 && region->match(x[0], x[1], x[2]);
 }
 
-/** Heat of a point whose material conducts it, 0 of others: what warmed it from the temperature that it has at first. */
+/** Heat of a point whose material conducts it, 0 of others: what warmed it from the temperature
+ *  that it has at first. */
 double FixMPMAbsorb::heat_of(int i) const
 {
   const auto *const field = field_of(lmp, i);
@@ -176,7 +177,8 @@ void FixMPMAbsorb::restart(char *buf)
 }
 
 /* ----------------------------------------------------------------------
-   scalar: mass that has gone; vector: points, mass, momentum, kinetic and stored energy of these, mass per time, and heat
+   scalar: mass that has gone; vector: points, mass, momentum, kinetic and stored energy of these,
+   mass per time, and heat
 ------------------------------------------------------------------------- */
 
 double FixMPMAbsorb::compute_vector(int k)

@@ -33,7 +33,8 @@ struct MPMAbsorbOptions {
   MPM_NS::Options declare();
 };
 
-/** Removes the material points of its group that are in a region at the end of a step, and sums up their mass and other quantities. */
+/** Removes the material points of its group that are in a region at the end of a step, and sums up
+ *  their mass and other quantities. */
 class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
  public:
   FixMPMAbsorb(class LAMMPS *, int, char **);

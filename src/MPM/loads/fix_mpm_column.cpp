@@ -7,17 +7,21 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The velocities of the nodes in a plane across the axis become their mean, weighted by their masses m,
+   The velocities of the nodes in a plane across the axis become their mean, weighted by their
+   masses m,
 
      v_k = sum_i m_i v_i / sum_i m_i
 
-   The functions of the nodes in a plane sum to a function of the height alone: strains are those of ground without end, and its forces
-   sum_i f_i are, too, as the stress at the free sides has no part in them. So the column obeys the equations of the lattice in
-   one dimension, with all that the material does. Old velocities become their mean, too: where layers have moved by different ways, nodes at the sides
-   see more of one of them, and FLIP would keep that. The mean is a projection, orthogonal with the masses, and does no work.
+   The functions of the nodes in a plane sum to a function of the height alone: strains are those of
+   ground without end, and its forces sum_i f_i are, too, as the stress at the free sides has no
+   part in them. So the column obeys the equations of the lattice in one dimension, with all that
+   the material does. Old velocities become their mean, too: where layers have moved by different
+   ways, nodes at the sides see more of one of them, and FLIP would keep that. The mean is a
+   projection, orthogonal with the masses, and does no work.
 
-   Columns beside a model: P.A. Cundall, H. Hansteen, S. Lacasse, P.B. Selnes, NESSI, report 51508-9, Norwegian Geotechnical
-   Institute (1980); O.C. Zienkiewicz, N. Bicanic, F.Q. Shen, in Advances in Computational Nonlinear Mechanics, Springer (1989) 109.
+   Columns beside a model: P.A. Cundall, H. Hansteen, S. Lacasse, P.B. Selnes, NESSI, report
+   51508-9, Norwegian Geotechnical Institute (1980); O.C. Zienkiewicz, N. Bicanic, F.Q. Shen, in
+   Advances in Computational Nonlinear Mechanics, Springer (1989) 109.
 ------------------------------------------------------------------------- */
 
 #include "loads/fix_mpm_column.h"

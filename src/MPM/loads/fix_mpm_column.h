@@ -23,9 +23,9 @@ FixStyle(mpm/column,FixMPMColumn);
 
 namespace LAMMPS_NS {
 
-/** A body that represents a column of level ground. All nodes at the same height have one velocity, so that the column
- *  moves like ground of infinite extent, whatever its width. Fix mpm/dashpot takes the motion and the stress of the
- *  free field from it. */
+/** A body that represents a column of level ground. All nodes at the same height have one velocity,
+ *  so that the column moves like ground of infinite extent, whatever its width. Fix mpm/dashpot
+ *  takes the motion and the stress of the free field from it. */
 class FixMPMColumn : public Fix, public MPMNodeAction {
  public:
   FixMPMColumn(class LAMMPS *, int, char **);
@@ -48,10 +48,12 @@ class FixMPMColumn : public Fix, public MPMNodeAction {
   int axis = 0;    ///< axis of the column
   /** Its field. Valid during a run. */
   MPMField &ground() const;
-  /** Present stress [pressure] xx yy zz xy xz yz at a height on the lattice: linear between layers of points, and
-   *  extrapolated by half of their distance beyond the lowest and the highest layer. */
+  /** Present stress [pressure] xx yy zz xy xz yz at a height on the lattice: linear between layers
+   *  of points, and extrapolated by half of their distance beyond the lowest and the highest
+   *  layer. */
   void stress(double height, double sigma[6]) const;
-  /** Velocity at a height before the momentum equation, and its change by this equation; after the column has acted in this step. */
+  /** Velocity at a height before the momentum equation, and its change by this equation; after the
+   *  column has acted in this step. */
   void motion(double height, double old[3], double change[3]) const;
   /** Heights of the lowest and the highest layer, and the largest distance between layers. */
   double lowest() const { return layers.front().height; }

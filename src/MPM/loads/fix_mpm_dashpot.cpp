@@ -7,34 +7,42 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Behind its surface a body goes on for ever. A plane wave that arrives along the normal n takes the traction
+   Behind its surface a body goes on for ever. A plane wave that arrives along the normal n takes
+   the traction
 
      t = -Z (v - 2 v_in) + t_0,   Z = rho c_p n n + rho c_s (1 - n n)
 
-   with it, where v_in is the velocity of a wave that comes from the far side, and t_0 what the far side bears at rest (J. Lysmer,
-   R.L. Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859; the incoming wave: W.B. Joyner, A.T.F. Chen, Bull. Seismol. Soc. Am. 65
-   (1975) 1315).
+   with it, where v_in is the velocity of a wave that comes from the far side, and t_0 what the far
+   side bears at rest (J. Lysmer, R.L. Kuhlemeyer, J. Eng. Mech. Div. ASCE 95 (1969) 859; the
+   incoming wave: W.B. Joyner, A.T.F. Chen, Bull. Seismol. Soc. Am. 65 (1975) 1315).
 
-   Marks. The velocity must be that on the surface: a dashpot half a spacing of points below it reflects k s/4 of a wave of the
-   wave number k, as the layer in front of it is a mass. Each point of the first two layers, with shares of
-   the area hat(depth - 1) that sum to one wherever the layers are, has a mark at its foot on the surface. The mark sees v = sum_i w_i v_i of
-   the nodes around it, and its impulse P goes to these with the same w_i, so that the dashpots only take energy. The weights are
-   the functions of the lattice there. Nodes beyond the surface that points hardly reach would fly off: those on which dashpots would act faster
-   than FASTEST get less, and the others so much more that the sum of w_i is one and that of w_i x_i stays at the mark.
+   Marks. The velocity must be that on the surface: a dashpot half a spacing of points below it
+   reflects k s/4 of a wave of the wave number k, as the layer in front of it is a mass. Each point
+   of the first two layers, with shares of the area hat(depth - 1) that sum to one wherever the
+   layers are, has a mark at its foot on the surface. The mark sees v = sum_i w_i v_i of the nodes
+   around it, and its impulse P goes to these with the same w_i, so that the dashpots only take
+   energy. The weights are the functions of the lattice there. Nodes beyond the surface that points
+   hardly reach would fly off: those on which dashpots would act faster than FASTEST get less, and
+   the others so much more that the sum of w_i is one and that of w_i x_i stays at the mark.
 
-   Time. With a = dt w M^-1 w A Z a dashpot alone on its nodes obeys du/ds = -a (u - b) + D within a step, s from 0 to 1, from the old
-   velocity u_0 at the mark on. D is what forces change in the step, and b = 2 v_in. Its mean over the step,
-   phi u_0 + (1 - phi)/a D + (1 - phi) b with phi = (1 - exp(-a))/a, times A dt Z is what the dashpot takes. This is of second order in the time step,
-   has the right state at rest, and damps for any step. Marks share nodes: a is that of a wave which all of them see, by the
-   sums of A Z at the nodes. As none of these is negative, no wave has a larger one.
+   Time. With a = dt w M^-1 w A Z a dashpot alone on its nodes obeys du/ds = -a (u - b) + D within a
+   step, s from 0 to 1, from the old velocity u_0 at the mark on. D is what forces change in the
+   step, and b = 2 v_in. Its mean over the step, phi u_0 + (1 - phi)/a D + (1 - phi) b with phi = (1
+   - exp(-a))/a, times A dt Z is what the dashpot takes. This is of second order in the time step,
+   has the right state at rest, and damps for any step. Marks share nodes: a is that of a wave which
+   all of them see, by the sums of A Z at the nodes. As none of these is negative, no wave has a
+   larger one.
 
-   The static support is a dead load with the stress at the start, which is put on the layers of points as that of fix mpm/traction. The
-   stress of points next to a face is not quite what nodes bear there (0.3 % of the weight of 20 cells), and that would move the body with
-   a constant velocity. What nodes next to the surface lack in the first step so as not to be accelerated is a part of the support, too, at the marks.
+   The static support is a dead load with the stress at the start, which is put on the layers of
+   points as that of fix mpm/traction. The stress of points next to a face is not quite what nodes
+   bear there (0.3 % of the weight of 20 cells), and that would move the body with a constant
+   velocity. What nodes next to the surface lack in the first step so as not to be accelerated is a
+   part of the support, too, at the marks.
 
-   A free field. Where the far side is level ground that is shaken, too, it is a column (fix mpm/column), and v is the velocity relative to it,
-   at the same height, and t_0 changes by what the traction of its stress has changed since the start. Ground that
-   moves like the column feels nothing but the traction that it would have in the middle of level ground.
+   A free field. Where the far side is level ground that is shaken, too, it is a column (fix
+   mpm/column), and v is the velocity relative to it, at the same height, and t_0 changes by what
+   the traction of its stress has changed since the start. Ground that moves like the column feels
+   nothing but the traction that it would have in the middle of level ground.
 ------------------------------------------------------------------------- */
 
 #include "loads/fix_mpm_dashpot.h"
@@ -64,8 +72,9 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
-// rate of a node, in wave speeds over node spacings, times the density of the far side over that of the body: with stress mls, stress
-// pulls less at nodes that points hardly reach than the functions there tell, and dashpots must not pull more
+// rate of a node, in wave speeds over node spacings, times the density of the far side over that of
+// the body: with stress mls, stress pulls less at nodes that points hardly reach than the functions
+// there tell, and dashpots must not pull more
 static constexpr double FASTEST = 20.0, FASTEST_MLS = 6.0;
 
 static constexpr int DEPTH =
@@ -143,8 +152,9 @@ void FixMPMDashpot::init_physics(MPMPlan &plan)
   }
 }
 
-/** With the velocities of points that are mapped back, or stress that is older, dashpots at nodes that points hardly reach take more than the
- *  wave brings: a surface on a plane of nodes takes 5 to 20 % of its amplitude, and more of it on finer lattices. */
+/** With the velocities of points that are mapped back, or stress that is older, dashpots at nodes
+ *  that points hardly reach take more than the wave brings: a surface on a plane of nodes takes 5
+ *  to 20 % of its amplitude, and more of it on finer lattices. */
 void FixMPMDashpot::warn_of_light_nodes(const MPMField &field) const
 {
   const auto &o = field.options;
@@ -252,7 +262,8 @@ void FixMPMDashpot::define()
 }
 
 /* ----------------------------------------------------------------------
-   the same face of a point under two of these would have twice the resistance, which sends waves back: (1 - 2)/(1 + 2) of them
+   the same face of a point under two of these would have twice the resistance, which sends waves
+   back: (1 - 2)/(1 + 2) of them
 ------------------------------------------------------------------------- */
 
 void FixMPMDashpot::warn_about_others() const
@@ -283,7 +294,8 @@ void FixMPMDashpot::warn_about_others() const
    the column at the far side
 ------------------------------------------------------------------------- */
 
-/** lowest, highest: points of the surface; steepest: largest cosine between its normal and the column. */
+/** lowest, highest: points of the surface; steepest: largest cosine between its normal and the
+ *  column. */
 void FixMPMDashpot::check_column(double lowest, double highest, double steepest) const
 {
   if (steepest > UPRIGHT)
@@ -428,7 +440,8 @@ void FixMPMDashpot::place_marks(Body &body)
   });
 }
 
-/** Calls f(point, node, function) for the nodes around the places of marks and below them, a cell after the other. */
+/** Calls f(point, node, function) for the nodes around the places of marks and below them, a cell
+ *  after the other. */
 template <class F> void FixMPMDashpot::visit_below(const Body &body, const F &f) const
 {
   const MPMField &field = *body.field;
@@ -455,9 +468,10 @@ template <class F> void FixMPMDashpot::visit_below(const Body &body, const F &f)
 }
 
 /* ----------------------------------------------------------------------
-   Forces that would accelerate nodes next to the surface in the first step, at rest those that walls had borne but for what the support
-   has on points: each node gives it to the marks that see it, from the surface down, by their functions. Where surfaces of several
-   fixes meet at an edge, the marks of all of them share, or else both would bear it
+   Forces that would accelerate nodes next to the surface in the first step, at rest those that
+   walls had borne but for what the support has on points: each node gives it to the marks that see
+   it, from the surface down, by their functions. Where surfaces of several fixes meet at an edge,
+   the marks of all of them share, or else both would bear it
 ------------------------------------------------------------------------- */
 
 void FixMPMDashpot::complete_supports(double dt)
@@ -509,7 +523,8 @@ void FixMPMDashpot::find_rates(Body &body)
 }
 
 /* ----------------------------------------------------------------------
-   weights of the nodes of a mark, and a along its normal and in its plane. False where no node can take an impulse
+   weights of the nodes of a mark, and a along its normal and in its plane. False where no node can
+   take an impulse
 ------------------------------------------------------------------------- */
 
 bool FixMPMDashpot::weigh(Body &body, const Mark &mark, double dt, double *damping) const
@@ -597,7 +612,8 @@ void FixMPMDashpot::push(Body &body, double dt)
       begin[d] -= 2.0 * arriving[d];
       if (relax > 0.0) begin[d] += row[MOTION + d] / relax;
     }
-    // a traction is one of the dashpots at a velocity less, but for a fluid, which has none in the plane
+    // a traction is one of the dashpots at a velocity less, but for a fluid, which has none in the
+    // plane
     const double lack = dot(row + LACK, n);
     double along[3] = {0.0, 0.0, 0.0};
     for (int d = 0; d < dim; d++) {
@@ -678,8 +694,9 @@ void FixMPMDashpot::act(double dt, Stage stage)
 }
 
 /* ----------------------------------------------------------------------
-   The energy watch knows the work of forces on points. Those of the support have a stress besides, whose work is counted here as
-   the ledger does, at the mean of the velocities of nodes before and after the step
+   The energy watch knows the work of forces on points. Those of the support have a stress besides,
+   whose work is counted here as the ledger does, at the mean of the velocities of nodes before and
+   after the step
 ------------------------------------------------------------------------- */
 
 void FixMPMDashpot::tell_watch(const Body &body)
@@ -717,7 +734,8 @@ void FixMPMDashpot::tell_watch(const Body &body)
 }
 
 /* ----------------------------------------------------------------------
-   the support, and waves that come in at this time, around which the velocities of nodes are half a step before and behind
+   the support, and waves that come in at this time, around which the velocities of nodes are half a
+   step before and behind
 ------------------------------------------------------------------------- */
 
 void FixMPMDashpot::post_force(int)

@@ -29,9 +29,9 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 namespace LAMMPS_NS {
 class FixMPMColumn;
 
-/** Surfaces of bodies behind which the body continues to infinity. Dashpots absorb the waves that arrive (Lysmer and
- *  Kuhlemeyer) and send in others, and a static support keeps the traction that the far side bears at the start. The far
- *  side is at rest or moves like a column of ground. */
+/** Surfaces of bodies behind which the body continues to infinity. Dashpots absorb the waves that
+ *  arrive (Lysmer and Kuhlemeyer) and send in others, and a static support keeps the traction that
+ *  the far side bears at the start. The far side is at rest or moves like a column of ground. */
 class FixMPMDashpot :
     public FixMPMState,
     public MPMNodeAction,
@@ -63,9 +63,10 @@ class FixMPMDashpot :
   void add_stress(const MPMField &, int first, int n, double *tau) const override;
 
  private:
-  // For each point: area of the surface of its dashpot, vector from the point to this surface [3], normal out of the body [3],
-  // density of the far side; shares in the static support (MPMFace): area and stress, traction [3]; motion of the surface so far [3];
-  // traction at the mark that the support lacks [3]. All of them move with the point as they were found and do not rotate.
+  // For each point: area of the surface of its dashpot, vector from the point to this surface [3],
+  // normal out of the body [3], density of the far side; shares in the static support (MPMFace):
+  // area and stress, traction [3]; motion of the surface so far [3]; traction at the mark that the
+  // support lacks [3]. All of them move with the point as they were found and do not rotate.
   MPMRows rows;
   enum {
     AREA,
@@ -78,7 +79,8 @@ class FixMPMDashpot :
     MOTION = HELD + 3,
     LACK = MOTION + 3,
     WIDTH = LACK + 3,
-    // with a column: initial traction of the support without that of the column [3]; HELD is the present sum of both
+    // with a column: initial traction of the support without that of the column [3]; HELD is the
+    // present sum of both
     REST = WIDTH,
     WIDTH_COLUMN = REST + 3
   };
@@ -112,7 +114,8 @@ class FixMPMDashpot :
   bool supports = false;    // is there a stress that the support holds?
   bool fresh = false;       // the traction that the support lacks is not known yet
   double work = 0.0;    // on the bodies, without the support, this rank's share [mass velocity^2]
-  // force on nodes by marks [3], force on points by the support [3], area, force that the support lacked [3]
+  // force on nodes by marks [3], force on points by the support [3], area, force that the support
+  // lacked [3]
   static constexpr int NSUM = 10;
   double sums[NSUM] = {}, all_sums[NSUM] = {};
   bool sums_known = true;

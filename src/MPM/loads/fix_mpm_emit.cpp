@@ -423,7 +423,7 @@ void FixMPMEmit::list_nodes()
 
 /* ----------------------------------------------------------------------
    Work is impulse times the velocity with which points are moved, less half of what this has changed by since the last step, as that of walls:
-   see FixMPMBoundary::Wall::half_change()
+   see MPMWallMotion::half_change()
 ------------------------------------------------------------------------- */
 
 void FixMPMEmit::act(double dt, Stage stage)

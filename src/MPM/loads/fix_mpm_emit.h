@@ -46,12 +46,14 @@ struct MPMEmitOptions {
   MPM_NS::Options declare(int dimension);
 };
 
-/** Inflow of material points through a region, the inlet. Points enter at its upstream end, layer by layer, and move with
- *  the given velocity until they leave it, because the nodes of the inlet have that velocity.
+/** Inflow of material points through a region, the inlet. Points enter at its upstream end, layer
+ *  by layer, and move with the given velocity until they leave it, because the nodes of the inlet
+ *  have that velocity.
  *
- *  Layers are frozen in the flow: layer k is at the distance S - (k + 1/2) d from the upstream end, where S is the
- *  distance that the flow has traveled so far and d is the distance between layers. A layer enters at its current place in
- *  the step in which this distance becomes positive. So the mass agrees with the flow for any velocity and time step. */
+ *  Layers are frozen in the flow: layer k is at the distance S - (k + 1/2) d from the upstream end,
+ *  where S is the distance that the flow has traveled so far and d is the distance between layers.
+ *  A layer enters at its current place in the step in which this distance becomes positive. So the
+ *  mass agrees with the flow for any velocity and time step. */
 class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
  public:
   FixMPMEmit(class LAMMPS *, int, char **);

@@ -44,7 +44,7 @@
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 #include "loads/mpm_face.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 
 #include "atom.h"

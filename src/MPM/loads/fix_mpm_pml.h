@@ -38,9 +38,9 @@ struct MPMPMLOptions {
   MPM_NS::Options declare(int dimension);
 };
 
-/** Perfectly matched layers next to faces of the box (unsplit, after Basu and Chopra). Points there see stretched
- *  coordinates in which waves decay, and incoming waves are not reflected, at any angle. The initial stress of the layers
- *  is kept. */
+/** Perfectly matched layers next to faces of the box (unsplit, after Basu and Chopra). Points there
+ *  see stretched coordinates in which waves decay, and incoming waves are not reflected, at any
+ *  angle. The initial stress of the layers is kept. */
 class FixMPMPML : public FixMPMState, public MPMPhysics, public MPMStretch, private MPMPMLOptions {
  public:
   FixMPMPML(class LAMMPS *, int, char **);

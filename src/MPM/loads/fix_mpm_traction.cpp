@@ -7,22 +7,25 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The surface is that of the first run, and goes with the material: each point below it has an area A and a normal N. A dead
-   traction t is the force A t for ever. Pressure acts on the area da = J F^-T A N (Nanson), that is T = -p cof(F) N for
-   each A, with the F of the point. What points give to the nodes are forces A T (atom->f, with shares of the area that sum to all
-   of it) and a stress with the traction T on the present area cof(F) N = a n, which moves the
-   force to the surface, see MPMFace:
+   The surface is that of the first run, and goes with the material: each point below it has an area
+   A and a normal N. A dead traction t is the force A t for ever. Pressure acts on the area da = J
+   F^-T A N (Nanson), that is T = -p cof(F) N for each A, with the F of the point. What points give
+   to the nodes are forces A T (atom->f, with shares of the area that sum to all of it) and a stress
+   with the traction T on the present area cof(F) N = a n, which moves the force to the surface, see
+   MPMFace:
 
      tau = -W J/a [T n + n T - (T.n) n n]
 
-   It is symmetric, and so has no torque, that of its traction along the surface being in the place of the forces.
+   It is symmetric, and so has no torque, that of its traction along the surface being in the place
+   of the forces.
 
    Pressure p on all of the surface of a body is, by the theorem of Gauss, a stress, too,
 
      -int p N_i n da = -int p grad N_i dv = -p sum_p V_p grad N_i(x_p)
 
-   The resultant is zero as sum_i grad N_i is, and so is the torque. A body with the stress -p is in equilibrium, wherever its
-   points are (the virtual stress boundary of J. Given, Y. Liang, Z. Zeng, X. Zhang, K. Soga, Comput. Mech. 75 (2025)).
+   The resultant is zero as sum_i grad N_i is, and so is the torque. A body with the stress -p is in
+   equilibrium, wherever its points are (the virtual stress boundary of J. Given, Y. Liang, Z. Zeng,
+   X. Zhang, K. Soga, Comput. Mech. 75 (2025)).
 ------------------------------------------------------------------------- */
 
 #include "loads/fix_mpm_traction.h"
@@ -191,7 +194,8 @@ bool FixMPMTraction::belongs(const MPMField &field, int i) const
 }
 
 /* ----------------------------------------------------------------------
-   pressure acts on the area that the surface has by where points are, in the updated frame. It changes slowly in explicit steps
+   pressure acts on the area that the surface has by where points are, in the updated frame. It
+   changes slowly in explicit steps
 ------------------------------------------------------------------------- */
 
 static constexpr int EVERY = 10;    // explicit steps
@@ -271,7 +275,8 @@ void FixMPMTraction::post_run()
   look_for_stretch();
 }
 
-/** Size of the sum of the areas of a surface, with their normals, over the area: 1 for a plane. Collective. */
+/** Size of the sum of the areas of a surface, with their normals, over the area: 1 for a plane.
+ *  Collective. */
 double FixMPMTraction::evenness() const
 {
   if (surface == FREE) return 1.0;
@@ -289,7 +294,8 @@ double FixMPMTraction::evenness() const
   return all[3] > 0.0 ? std::sqrt(dot(all, all)) / all[3] : 1.0;
 }
 
-/** A pressure that pulls turns with a rim that curls, and holds it there, at rest under a part of its load. Collective. */
+/** A pressure that pulls turns with a rim that curls, and holds it there, at rest under a part of
+ *  its load. Collective. */
 void FixMPMTraction::look_for_curls()
 {
   constexpr double MUCH = 0.75, PLANE = 0.5;    // of the evenness at the start of the run, and that
@@ -305,9 +311,10 @@ void FixMPMTraction::look_for_curls()
 }
 
 /* ----------------------------------------------------------------------
-   In the updated frame, points that move from cell to cell next to a surface cut by the lattice lose stress, and the area that is
-   found of where they are falls behind: radii of a tube and a sphere under pressure inside are right to 1 % up to stretches of 1.5 of
-   the bore as this finds it, and not beyond. Mean over the surface of the largest stretch in it. Collective
+   In the updated frame, points that move from cell to cell next to a surface cut by the lattice
+   lose stress, and the area that is found of where they are falls behind: radii of a tube and a
+   sphere under pressure inside are right to 1 % up to stretches of 1.5 of the bore as this finds
+   it, and not beyond. Mean over the surface of the largest stretch in it. Collective
 ------------------------------------------------------------------------- */
 
 double FixMPMTraction::mean_stretch() const
@@ -486,9 +493,9 @@ void FixMPMTraction::post_force(int)
 }
 
 /* ----------------------------------------------------------------------
-   Work is that of the mean of the loads before and after each motion of a point. The stress -W J/a T n has the power
-   W V T.n d(J/a)/dt in a load along the normal; that of a traction along the surface, whose sum over layers is next to
-   nothing, is left out here
+   Work is that of the mean of the loads before and after each motion of a point. The stress -W J/a
+   T n has the power W V T.n d(J/a)/dt in a load along the normal; that of a traction along the
+   surface, whose sum over layers is next to nothing, is left out here
 ------------------------------------------------------------------------- */
 
 void FixMPMTraction::add_forces()
@@ -525,7 +532,8 @@ void FixMPMTraction::add_forces()
 }
 
 /* ----------------------------------------------------------------------
-   of the pressure at points: differences across a part of a cell, in which points differ from their neighbors
+   of the pressure at points: differences across a part of a cell, in which points differ from their
+   neighbors
 ------------------------------------------------------------------------- */
 
 void FixMPMTraction::find_gradient(std::vector<double> &gradient)
@@ -548,8 +556,10 @@ void FixMPMTraction::find_gradient(std::vector<double> &gradient)
 }
 
 /* ----------------------------------------------------------------------
-   pressure on all of the surface: where it depends on the place, there is a force on the volume besides the stress,
-   -int p N_i n da = -int (p grad N_i + N_i grad p) dv. The work is that on the volume, and of this force
+   pressure on all of the surface: where it depends on the place, there is a force on the volume
+   besides the stress,
+   -int p N_i n da = -int (p grad N_i + N_i grad p) dv. The work is that on the volume, and of this
+   force
 ------------------------------------------------------------------------- */
 
 void FixMPMTraction::press()
@@ -587,7 +597,8 @@ void FixMPMTraction::press()
 }
 
 /* ----------------------------------------------------------------------
-   the part of the load that is a stress, of points that the plan may have sorted since the loads were evaluated
+   the part of the load that is a stress, of points that the plan may have sorted since the loads
+   were evaluated
 ------------------------------------------------------------------------- */
 
 bool FixMPMTraction::adds_stress(const MPMField &field, int first, int last) const
@@ -638,7 +649,8 @@ static void turn_with(const double *a, const double *b, double *v)
 }
 
 /* ----------------------------------------------------------------------
-   the loads of this step at other deformations: dead ones are those in the rows, which pressure changes by its area
+   the loads of this step at other deformations: dead ones are those in the rows, which pressure
+   changes by its area
 ------------------------------------------------------------------------- */
 
 bool FixMPMTraction::follows(const MPMField &field, int first, int last) const

@@ -44,9 +44,10 @@ struct MPMTractionOptions {
   MPM_NS::Options declare(int dimension);
 };
 
-/** Forces per area on the surface of bodies: dead loads, which keep their direction and total, pressure, which stays
- *  normal to the surface and acts on its present area, and the forces of a moment (MPMMoment). They are applied as forces
- *  on points (atom->f). A pressure on all of the surface of a body is a part of the internal forces instead. */
+/** Forces per area on the surface of bodies: dead loads, which keep their direction and total,
+ *  pressure, which stays normal to the surface and acts on its present area, and the forces of a
+ *  moment (MPMMoment). They are applied as forces on points (atom->f). A pressure on all of the
+ *  surface of a body is a part of the internal forces instead. */
 class FixMPMTraction :
     public FixMPMState,
     public MPMPhysics,
@@ -78,14 +79,15 @@ class FixMPMTraction :
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
 
-  /** load: [3] force per area before deformation on the surface at point i, by the loads of this step, with the deformation
-   *  gradient F [9, row-major]. For searches for equilibrium; its node forces are those of atom->f and add_stress(). */
+  /** load: [3] force per area before deformation on the surface at point i, by the loads of this
+   *  step, with the deformation gradient F [9, row-major]. For searches for equilibrium; its node
+   *  forces are those of atom->f and add_stress(). */
   void load_on(int i, const double *F, double *load) const;
 
  private:
-  // Of a point. Before deformation: area, share of the stress (MPMFace), and normal [3]; area times cof(F) times normal is
-  // the area vector of the present surface. In the last step: force over this area [3], place [3], J over the present area,
-  // and pressure
+  // Of a point. Before deformation: area, share of the stress (MPMFace), and normal [3]; area times
+  // cof(F) times normal is the area vector of the present surface. In the last step: force over
+  // this area [3], place [3], J over the present area, and pressure
   MPMRows rows;
   enum {
     AREA,
@@ -97,15 +99,15 @@ class FixMPMTraction :
     PRESSED,
     WIDTH
   };
-  // Of a point with pressure, in the updated frame: present area over the norm of cof(F) times normal, which is the growth
-  // that the F of the point gives; layer (0: none, layers count from 1); displacement since the surface was found [3], and
-  // normal at that time [3]
+  // Of a point with pressure, in the updated frame: present area over the norm of cof(F) times
+  // normal, which is the growth that the F of the point gives; layer (0: none, layers count from
+  // 1); displacement since the surface was found [3], and normal at that time [3]
   MPMRows growth;
   enum { RATIO, LAYER, MOVED, FACING = MOVED + 3, GROWTH_WIDTH = FACING + 3 };
   bool grows = false;    // are these kept?
   MPMFaceGrowth face_growth;
-  // of a point, with pressure on all of the surface, in the last step: pressure, volume, force of the gradient of the
-  // pressure [3], place [3]
+  // of a point, with pressure on all of the surface, in the last step: pressure, volume, force of
+  // the gradient of the pressure [3], place [3]
   MPMRows inside;
   enum { PRESSURE, VOLUME, PUSH, AT = PUSH + 3, INSIDE_WIDTH = AT + 3 };
   bool defined = false;    // have the points of the surface been found?

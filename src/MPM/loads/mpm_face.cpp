@@ -29,8 +29,8 @@ using namespace MPM_NS;
 
 static constexpr double DEEPEST = 3.0;    // point with a share
 
-// what is refused: center of the force below a plane, and below other surfaces, in spacings; difference of the areas of two
-// layers below a plane; and what is told of these
+// what is refused: center of the force below a plane, and below other surfaces, in spacings;
+// difference of the areas of two layers below a plane; and what is told of these
 static constexpr double TOO_DEEP = 0.25, TOO_DEEP_CURVED = 0.6;
 static constexpr double TOO_UNEQUAL = 0.05, UNEQUAL = 0.01;
 // share of the area of a plane that has points above it, which is told
@@ -99,8 +99,9 @@ double MPMFace::stress_share_cut(double depth)
 }
 
 /* ----------------------------------------------------------------------
-   Whole points have all the same volume, or the same over that of a division of their edges (split). The spacing of whole points, if
-   at the surface others have more than a share PARTS of the volume, else 0: also where those below it have more than UNLIKE of theirs (relaxed points,
+   Whole points have all the same volume, or the same over that of a division of their edges
+   (split). The spacing of whole points, if at the surface others have more than a share PARTS of
+   the volume, else 0: also where those below it have more than UNLIKE of theirs (relaxed points,
    elements of a mesh), as their volumes tell nothing of the surface
 ------------------------------------------------------------------------- */
 
@@ -195,7 +196,8 @@ void MPMFace::find(const MPMField &field, int groupbit,
     share.stress = parts ? stress_share_cut(depth) : stress_share(depth);
     share.depth = depth * apart;
     share.layer = depth;
-    // deeper layers of a straight side around an axis are rings of another length: take that at the surface
+    // deeper layers of a straight side around an axis are rings of another length: take that at the
+    // surface
     const double ring = field.options.axisymmetric
         ? field.frame->circle(x[0] + share.normal[0] * share.depth) / field.frame->circle(x[0])
         : 1.0;
@@ -221,8 +223,8 @@ MPMFace::Judgement MPMFace::judge() const
           all[1] / area, std::fabs((all[6] - all[7]) / area)};
 }
 
-/** A plane through a body is no surface there: the force acts on the section. Points above the plane, within a layer from it, would cover an
- *  area; area: that of the points below it. */
+/** A plane through a body is no surface there: the force acts on the section. Points above the
+ *  plane, within a layer from it, would cover an area; area: that of the points below it. */
 static void tell_of_cut(LAMMPS *lmp, Region *region, const std::string &user, int igroup,
                         double spacing, double area)
 {

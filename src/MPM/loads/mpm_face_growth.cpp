@@ -19,14 +19,16 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// least variance of the places of points along the surface, in squares of node spacings: fewer than three points have less
+// least variance of the places of points along the surface, in squares of node spacings: fewer than
+// three points have less
 static constexpr double LEAST_SPREAD = 1.0e-4;
 
 /* ----------------------------------------------------------------------
-   Displacements U = u + (A - 1) (X - X0) with the scatter C = <(X - X0) (X - X0)^T> of places and B = <(U - u) (X - X0)^T> have A
-   = 1 + B C^-1. Each node has those around itself, relative to its own means, so that they do not depend on an origin; a point
-   takes the mean of its nodes. What points of one layer tell of the derivative along the normal does not matter for
-   the area |cof(A) n|, and it is made nothing by a large scatter along the normal.
+   Displacements U = u + (A - 1) (X - X0) with the scatter C = <(X - X0) (X - X0)^T> of places and B
+   = <(U - u) (X - X0)^T> have A = 1 + B C^-1. Each node has those around itself, relative to its
+   own means, so that they do not depend on an origin; a point takes the mean of its nodes. What
+   points of one layer tell of the derivative along the normal does not matter for the area |cof(A)
+   n|, and it is made nothing by a large scatter along the normal.
 ------------------------------------------------------------------------- */
 
 void MPMFaceGrowth::find(MPMField &field, const std::function<Member(int)> &member,

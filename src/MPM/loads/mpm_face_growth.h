@@ -17,11 +17,12 @@ class MPMField;
 
 /** Growth of the area of a surface, from the displacements of the points below it.
  *
- *  In the updated frame the deformation gradients of single points at a free surface do not measure this growth. Where the
- *  lattice of points cuts a curved surface, points that stick out are stretched less than the body, and gaps open between
- *  them, which a mean over points leaves out. The places of points include the gaps. So in each layer of points below the
- *  surface, an affine motion is fitted to the displacements of the points around each one, by least squares with the shape
- *  functions of nodes as weights. It gives the ratio of the areas.
+ *  In the updated frame the deformation gradients of single points at a free surface do not measure
+ *  this growth. Where the lattice of points cuts a curved surface, points that stick out are
+ *  stretched less than the body, and gaps open between them, which a mean over points leaves out.
+ *  The places of points include the gaps. So in each layer of points below the surface, an affine
+ *  motion is fitted to the displacements of the points around each one, by least squares with the
+ *  shape functions of nodes as weights. It gives the ratio of the areas.
  */
 class MPMFaceGrowth {
  public:
@@ -33,9 +34,9 @@ class MPMFaceGrowth {
   };
   static constexpr int LAYERS = 3;
 
-  /** Calls use(i, growth) for the points i for which member(i) has a layer and that have enough other points around them.
-   *  growth: present area over the area before the displacements. The nodes in reach of the points must be known.
-   *  Collective. */
+  /** Calls use(i, growth) for the points i for which member(i) has a layer and that have enough
+   *  other points around them. growth: present area over the area before the displacements. The
+   *  nodes in reach of the points must be known. Collective. */
   void find(MPMField &, const std::function<Member(int i)> &member,
             const std::function<void(int i, double growth)> &use);
   double memory_usage() const { return sums.capacity() * sizeof(double); }

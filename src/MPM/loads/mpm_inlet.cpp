@@ -27,8 +27,8 @@ static constexpr int AREA_SAMPLES = 1000;
 
 static constexpr double WRONG_AREA = 0.02;    // share by which a known one may be off
 
-// samples along its edges and the flow, which tell whether all sections are the same, and share of those that may differ: those
-// next to curved faces, where round-off decides
+// samples along its edges and the flow, which tell whether all sections are the same, and share of
+// those that may differ: those next to curved faces, where round-off decides
 static constexpr int PRISM_SAMPLES = 40, PRISM_SECTIONS = 9;
 static constexpr double MOST_DIFFERENT = 0.01;
 static constexpr int MARCH = 2000;    // steps that look for the surface
@@ -185,7 +185,8 @@ void MPMInlet::choose_axes()
 }
 
 /* ----------------------------------------------------------------------
-   Area of the section in the middle, and its extent along both axes: is it all of the rectangle of these?
+   Area of the section in the middle, and its extent along both axes: is it all of the rectangle of
+   these?
 ------------------------------------------------------------------------- */
 
 bool MPMInlet::find_section(const std::string &user, const double *low, const double *high)
@@ -237,7 +238,8 @@ bool MPMInlet::find_section(const std::string &user, const double *low, const do
 }
 
 /* ----------------------------------------------------------------------
-   all sections must be the same, or else points would leave the inlet through its sides, or not fill it
+   all sections must be the same, or else points would leave the inlet through its sides, or not
+   fill it
 ------------------------------------------------------------------------- */
 
 void MPMInlet::check_prism(const std::string &user) const

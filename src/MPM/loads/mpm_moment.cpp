@@ -46,7 +46,8 @@ void MPMMoment::Spin::load(const double *x, double *force) const
   }
 }
 
-/** After the displacements u (null: none); false where the points have no extent that bears the moment. Collective. */
+/** After the displacements u (null: none); false where the points have no extent that bears the
+ *  moment. Collective. */
 bool MPMMoment::find(const double *u, Spin &spin) const
 {
   double mine[6] = {0.0}, all[6];
@@ -82,7 +83,8 @@ bool MPMMoment::find(const double *u, Spin &spin) const
     if (!(T(2, 2) > 0.0)) return false;
     inverse(2, 2) = 1.0 / T(2, 2);
   } else {
-    // a thin surface has none about one axis, which is good as long as the moment has no part along it
+    // a thin surface has none about one axis, which is good as long as the moment has no part along
+    // it
     const Eigen::SelfAdjointEigenSolver<Matrix> axes(T);
     const double most = axes.eigenvalues()[2];
     if (!(most > 0.0)) return false;
@@ -152,7 +154,8 @@ double MPMMoment::differentiate(const double *u)
 }
 
 /* ----------------------------------------------------------------------
-   d(omega) = -T^-1 dT omega, dT = sum w (2 r.dr 1 - dr r - r dr); a motion of the center changes nothing in T, as sum w r = 0
+   d(omega) = -T^-1 dT omega, dT = sum w (2 r.dr 1 - dr r - r dr); a motion of the center changes
+   nothing in T, as sum w r = 0
 ------------------------------------------------------------------------- */
 
 void MPMMoment::add_change(const double *du, double *dforce)

@@ -19,11 +19,11 @@
 
 namespace LAMMPS_NS {
 
-/** Moment M on the points of a surface with weights w (areas), applied by forces that are linear in the
- *  positions r relative to the center:
+/** Moment M on the points of a surface with weights w (areas), applied by forces that are linear in
+ *  the positions r relative to the center:
  *      f = w omega x r,   T omega = M,   T = sum w (r.r 1 - r r),   sum w r = 0
- *  The sum of the forces is zero and their moment is M, wherever the points have moved. On the end of a beam,
- *  they are the stress of bending, and follow the beam. Forces are in units of force. */
+ *  The sum of the forces is zero and their moment is M, wherever the points have moved. On the end
+ *  of a beam, they are the stress of bending, and follow the beam. Forces are in units of force. */
 class MPMMoment : protected Pointers, public MPMTrialForces {
  public:
   /** weight(i): weight of point i of this rank, 0: none. name: of the caller, for errors. */

@@ -24,11 +24,11 @@ struct ThermalStretch {
   double volume(int i) const { return 1.0 / (now[i] * now[i] * now[i]); }
 };
 
-/** Removes the thermal stretch from the motion of a batch while this object exists. The laws then see
- *  F_e = F/theta, J_e = J/theta^3, the increment A_e of the same step with I + A_e = (I + A) theta_old/theta,
- *  and, as initial volume, the stress-free volume V_0 theta^3 of a point (V.A. Lubarda, Appl. Mech. Rev. 57
- *  (2004) 95: F = F_e F_theta, with a stress that is a function of F_e). Their energies are then per volume
- *  of the expanded material.
+/** Removes the thermal stretch from the motion of a batch while this object exists. The laws then
+ *  see F_e = F/theta, J_e = J/theta^3, the increment A_e of the same step with I + A_e = (I + A)
+ *  theta_old/theta, and, as initial volume, the stress-free volume V_0 theta^3 of a point (V.A.
+ *  Lubarda, Appl. Mech. Rev. 57 (2004) 95: F = F_e F_theta, with a stress that is a function of
+ *  F_e). Their energies are then per volume of the expanded material.
  */
 class ElasticMotion {
  public:

@@ -58,7 +58,8 @@ class MaterialPoint {
   /** Rotation of the frame in which the motion is controlled, see step(). */
   double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-  /** Deformation gradient F[9] and Cauchy stress[6] in the frame in which the motion is controlled. */
+  /** Deformation gradient F[9] and Cauchy stress[6] in the frame in which the motion is
+   *  controlled. */
   void frame_state(double *F, double *stress) const;
 
   // state of the first point

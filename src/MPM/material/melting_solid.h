@@ -16,11 +16,11 @@
 
 namespace MPM_NS {
 
-/** The solid part of points that melt and solidify. It fills the fraction s of their volume and bears the whole
- *  deviator S = s S_s of their stress, where S_s is the deviator in the solid. Melting removes the elastic shear of
- *  the molten part and leaves S_s unchanged. Newly formed solid is free of shear, which leaves S unchanged. The
- *  history of solid that melts is lost; newly formed solid has a new history, and the point keeps the mean over its
- *  solid.
+/** The solid part of points that melt and solidify. It fills the fraction s of their volume and
+ *  bears the whole deviator S = s S_s of their stress, where S_s is the deviator in the solid.
+ *  Melting removes the elastic shear of the molten part and leaves S_s unchanged. Newly formed
+ *  solid is free of shear, which leaves S unchanged. The history of solid that melts is lost; newly
+ *  formed solid has a new history, and the point keeps the mean over its solid.
  */
 class MeltingSolid {
  public:
@@ -29,7 +29,8 @@ class MeltingSolid {
   bool complete = true;    ///< are all points completely solid, before and now?
   double before[BATCH];    ///< volume fraction of the solid at the start of the step
 
-  /** was: row with the solid fraction to which the stress belongs; molten: row with the molten fraction. */
+  /** was: row with the solid fraction to which the stress belongs; molten: row with the molten
+   *  fraction. */
   MeltingSolid(const Batch &b, const double *was, const double *molten)
   {
     for (int i = 0; i < b.n; i++) {
@@ -40,8 +41,8 @@ class MeltingSolid {
     }
   }
 
-  /** Factor from the stress deviator of the point at the start of the step to that of its solid now; 0 if the point
-   *  is completely molten. */
+  /** Factor from the stress deviator of the point at the start of the step to that of its solid
+   *  now; 0 if the point is completely molten. */
   double to_solid(int i) const
   {
     return share[i] > 0.0 ? 1.0 / std::max(share[i], before[i]) : 0.0;
@@ -53,7 +54,8 @@ class MeltingSolid {
   }
 };
 
-/** While this object exists, the laws count their work only for a fraction of the volume of each point. */
+/** While this object exists, the laws count their work only for a fraction of the volume of each
+ *  point. */
 class ShareOfVolume {
  public:
   ShareOfVolume(Batch &batch, const double *share) : b(batch)

@@ -12,6 +12,7 @@
 // The definition of a material, as the parser passes it to compose().
 
 #include "law/law.h"
+#include "material/material.h"
 #include "material/temperature_factor.h"
 
 #include <cstdio>
@@ -59,20 +60,20 @@ struct ParameterPlace {
   }
 };
 
-/** A parameter that differs between points: its value is the mean times a factor, which is stored as
- *  a history variable. */
+/** A parameter that differs between points: its value is the mean times a factor, which is stored
+ *  as a history variable. */
 struct RandomParameter : UsedRandom, ParameterPlace {
   int row;    ///< row of the factor in the history of the material
   std::shared_ptr<const RandomField> field;
 };
 
 /** A parameter that depends on temperature: its value is the given value times a factor. */
-struct WarmParameter : ParameterPlace {
+struct VaryingParameter : ParameterPlace {
   TemperatureFactor factor;
 };
 
 /** A thermal conductivity that depends on temperature: the given value times a factor. */
-struct WarmConductivity {
+struct VaryingConductivity {
   int axis;    ///< 0; in orthotropic materials also 1 and 2
   TemperatureFactor factor;
 
@@ -89,12 +90,12 @@ struct UsedLaw {
 
   // set by compose()
 
-  int history = 0;                        ///< first row of its history
-  const LawKernels *kernels = nullptr;    ///< for the instruction set that runs
-  std::vector<RandomParameter> random;    ///< its parameters that differ between points
-  std::vector<WarmParameter> warm;        ///< its parameters that depend on temperature
-  bool varies = false;                    ///< do its LawParameters differ between points?
-  bool liquid = false;                    ///< is it a viscosity of the molten part alone?
+  int history = 0;                          ///< first row of its history
+  const LawKernels *kernels = nullptr;      ///< for the instruction set that runs
+  std::vector<RandomParameter> random;      ///< its parameters that differ between points
+  std::vector<VaryingParameter> varying;    ///< its parameters that depend on temperature
+  bool varies = false;                      ///< do its LawParameters differ between points?
+  bool liquid = false;                      ///< is it a viscosity of the molten part alone?
   /** Is it a strength whose plastic work the damage converts into heat completely? */
   bool heats_alone = false;
 };
@@ -114,7 +115,8 @@ struct MaterialDefinition {
   std::vector<UsedRandom> random;
   std::vector<UsedVary> vary;
 
-  /** Does a viscosity add to the same part of the stress that a law updates incrementally from step to step? */
+  /** Does a viscosity add to the same part of the stress that a law updates incrementally from step
+   *  to step? */
   bool shares_stress() const
   {
     for (const Part part : {CLOSED, STRENGTH})

@@ -16,7 +16,8 @@
 
 using namespace MPM_NS;
 
-// the stretch across is found up to a part TOLERANCE of it, or until the stress there is this part of the stiffness, which is rounding
+// the stretch across is found up to a part TOLERANCE of it, or until the stress there is this part
+// of the stiffness, which is rounding
 static constexpr double TOLERANCE = 1.0e-11, NO_STRESS = 1.0e-14;
 // relative change of the stretch for the first slope, and the largest of an iteration
 static constexpr double PROBE = 1.0e-7, MOST_CHANGE = 0.3;
@@ -87,7 +88,8 @@ void PlaneStress::make_frame(const double *a, const double *b, double (*frame)[3
 }
 
 /* ----------------------------------------------------------------------
-   another reference configuration, turned so that its axes x y z are those of the frame, has the same stress
+   another reference configuration, turned so that its axes x y z are those of the frame, has the
+   same stress
 ------------------------------------------------------------------------- */
 
 void PlaneStress::turn_to_material(const Point &point, double *F) const
@@ -101,7 +103,8 @@ void PlaneStress::turn_to_material(const Point &point, double *F) const
 }
 
 /* ----------------------------------------------------------------------
-   principal stretches and axes, at the start and the end. Axes across a line turn as little as the line does
+   principal stretches and axes, at the start and the end. Axes across a line turn as little as the
+   line does
 ------------------------------------------------------------------------- */
 
 void PlaneStress::find_axes(const Point &point, State &s) const
@@ -221,9 +224,10 @@ void PlaneStress::stress_across(Batch &b, const Point *point, double *value)
   }
 }
 
-/** The stretch of all points that are not done, by the secant method. What yields or breaks has a stress with kinks and steps,
- *  between whose sides the secant method can go to and fro: from a few iterations on, every other one halves the range between the last
- *  stretches with a stress below and above zero. */
+/** The stretch of all points that are not done, by the secant method. What yields or breaks has a
+ *  stress with kinks and steps, between whose sides the secant method can go to and fro: from a few
+ *  iterations on, every other one halves the range between the last stretches with a stress below
+ *  and above zero. */
 int PlaneStress::iterate(Batch &b, const Point *point)
 {
   double before[BATCH], now[BATCH], change[BATCH], slope[BATCH], low[BATCH], high[BATCH];
@@ -274,7 +278,8 @@ int PlaneStress::iterate(Batch &b, const Point *point)
   return -1;
 }
 
-/** What breaks may do so in the last, small change: then there is another state without stress, and it is looked for from there. */
+/** What breaks may do so in the last, small change: then there is another state without stress, and
+ *  it is looked for from there. */
 int PlaneStress::solve(Batch &b, const Point *point)
 {
   int bad = iterate(b, point);
@@ -335,8 +340,8 @@ int PlaneStress::update(Batch &b, const Point *point, const std::function<void(B
 }
 
 /* ----------------------------------------------------------------------
-   Is the stress of a small strain turned by what turns the strain? If not, does a strain that is the same on both sides of the plane of
-   axes 1 and 2 cause a stress that is?
+   Is the stress of a small strain turned by what turns the strain? If not, does a strain that is
+   the same on both sides of the plane of axes 1 and 2 cause a stress that is?
 ------------------------------------------------------------------------- */
 
 namespace {

@@ -24,8 +24,8 @@ namespace MPM_NS {
  *  the spectrum of the correlation (E. Vanmarcke, Random Fields, 1983, ch. 3; M. Shinozuka, C.-M.
  *  Jan, J. Sound Vib. 25 (1972) 111), by Fourier transforms of one tile of the lattice at a time,
  *  and interpolated by cubic B-splines, whose own spectrum is divided out. The noise of a node is a
- *  function of its indices and the seed, and tiles have fixed places. A value thus depends only on the
- *  position, the length, and the seed, bit for bit, and not on the rank or the order of calls.
+ *  function of its indices and the seed, and tiles have fixed places. A value thus depends only on
+ *  the position, the length, and the seed, bit for bit, and not on the rank or the order of calls.
  */
 class RandomField {
  public:
@@ -38,8 +38,8 @@ class RandomField {
   RandomField(const RandomField &) = delete;
   RandomField &operator=(const RandomField &) = delete;
 
-  /** Value at x[3]. Throws std::runtime_error if the length is too short: if nearly every value needs a
-   *  tile of its own, or if x is too large for its round-off to be small. */
+  /** Value at x[3]. Throws std::runtime_error if the length is too short: if nearly every value
+   *  needs a tile of its own, or if x is too large for its round-off to be small. */
   double value(const double *x) const;
 
   /** Frees the tiles; they are made again when needed. */
@@ -48,12 +48,14 @@ class RandomField {
  private:
   static constexpr int PER_LENGTH = 4;    ///< nodes per length
   static constexpr int TILE = 48;         ///< cells along the side of a tile
-  /** Nodes around a tile whose noise is included: four lengths, beyond which less than 1e-8 of it matters. */
+  /** Nodes around a tile whose noise is included: four lengths, beyond which less than 1e-8 of it
+   *  matters. */
   static constexpr int MARGIN = 16;
   static constexpr int WINDOW = TILE + 2 * MARGIN;
   static constexpr int KEPT = TILE + 3;    ///< nodes along a side whose splines reach the tile
   static constexpr std::size_t MAX_TILES = 128;    ///< tiles in memory, 1 MB each
-  /** A tile takes as long as 10^5 values: after TILES_TO_TRY tiles, there must have been LEAST_VALUES values per tile. */
+  /** A tile takes as long as 10^5 values: after TILES_TO_TRY tiles, there must have been
+   *  LEAST_VALUES values per tile. */
   static constexpr int64_t TILES_TO_TRY = 32, LEAST_VALUES = 2;
 
   using Index = std::array<int64_t, 3>;

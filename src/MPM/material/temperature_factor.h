@@ -13,9 +13,9 @@
 
 namespace MPM_NS {
 
-/** Factor of a parameter as a function of the temperature T: a table with linear interpolation, or a
- *  formula, equal to one at a reference temperature R, between two limits. Outside the table or the limits
- *  it is constant. It is monotonic between knots().
+/** Factor of a parameter as a function of the temperature T: a table with linear interpolation, or
+ *  a formula, equal to one at a reference temperature R, between two limits. Outside the table or
+ *  the limits it is constant. It is monotonic between knots().
  */
 class TemperatureFactor {
  public:
@@ -40,8 +40,8 @@ class TemperatureFactor {
   double mean(double low, double high) const;
   bool is_table() const { return !factor.empty(); }
 
-  /** n temperatures from one limit of a formula to the other, including both, such that the factor changes by the same
-   *  ratio from each to the next; for LINEAR only the limits. */
+  /** n temperatures from one limit of a formula to the other, including both, such that the factor
+   *  changes by the same ratio from each to the next; for LINEAR only the limits. */
   std::vector<double> spread(int n) const;
 
   /** Temperatures between which the factor is monotonic. */

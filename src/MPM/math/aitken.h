@@ -14,9 +14,10 @@
 
 namespace MPM_NS {
 
-/** Accelerates iterations x -> f(x) that converge slowly. The changes of x are then nearly a geometric series,
- *  c' = s c, whose factor s follows from two changes in a row. The rest of the series, c' (s + s^2 + ...), is added
- *  at once (Aitken's method for vectors). The limit of the iterations does not change. */
+/** Accelerates iterations x -> f(x) that converge slowly. The changes of x are then nearly a
+ *  geometric series, c' = s c, whose factor s follows from two changes in a row. The rest of the
+ *  series, c' (s + s^2 + ...), is added at once (Aitken's method for vectors). The limit of the
+ *  iterations does not change. */
 class Aitken {
  public:
   /** To be called before the first iteration. */
@@ -28,8 +29,8 @@ class Aitken {
     failed = 0;
   }
 
-  /** To be called after each iteration. error: the error that the iterations reduce; smooth: f is the same function as
-   *  in the iteration before. Returns true if x was changed. */
+  /** To be called after each iteration. error: the error that the iterations reduce; smooth: f is
+   *  the same function as in the iteration before. Returns true if x was changed. */
   bool advance(std::vector<double> &x, double error, bool smooth)
   {
     constexpr double SLOW = 0.2, NO_END = 1.0 - 1.0e-9;

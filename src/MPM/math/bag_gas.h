@@ -13,8 +13,8 @@
 
 namespace MPM_NS {
 
-/** An ideal gas with constant specific heat in a bag, in one uniform state and consistent units (energy is pressure
- *  times volume). Its volume is constant between calls of expand(). */
+/** An ideal gas with constant specific heat in a bag, in one uniform state and consistent units
+ *  (energy is pressure times volume). Its volume is constant between calls of expand(). */
 class BagGas {
  public:
   double gamma = 1.4;          ///< ratio of specific heats; 1: isothermal
@@ -24,8 +24,8 @@ class BagGas {
   double temperature = 1.0;    ///< temperature of the gas
 
   double pressure() const { return mass * R * temperature / volume; }
-  /** Internal energy. With gamma = 1 it would be infinite, and 0 is returned; the free energy relative to a volume of 1
-   *  is not counted. */
+  /** Internal energy. With gamma = 1 it would be infinite, and 0 is returned; the free energy
+   *  relative to a volume of 1 is not counted. */
   double energy() const { return gamma > 1.0 ? pressure() * volume / (gamma - 1.0) : 0.0; }
 
   /** Changes the volume, adiabatically or, with gamma = 1, at constant temperature. */
@@ -35,8 +35,8 @@ class BagGas {
     volume = to;
   }
 
-  /** Adds a mass of gas of the given temperature, with its enthalpy. A negative mass leaves the bag, and should have the
-   *  temperature of the bag. */
+  /** Adds a mass of gas of the given temperature, with its enthalpy. A negative mass leaves the
+   *  bag, and should have the temperature of the bag. */
   void add(double more, double its_temperature)
   {
     const double all = mass + more;
@@ -44,9 +44,10 @@ class BagGas {
     mass = all;
   }
 
-  /** Mass per area and time of the isentropic flow through a hole from pressure p to pressure q < p, choked at the speed
-   *  of sound (A.H. Shapiro, Compressible Fluid Flow I (1953), chapter 4); 0 if q is not below p. RT: R times the
-   *  temperature at pressure p. The unit is that of (p/(R T)) sqrt(R T). */
+  /** Mass per area and time of the isentropic flow through a hole from pressure p to pressure q <
+   *  p, choked at the speed of sound (A.H. Shapiro, Compressible Fluid Flow I (1953), chapter 4); 0
+   *  if q is not below p. RT: R times the temperature at pressure p. The unit is that of (p/(R T))
+   *  sqrt(R T). */
   static double flow(double p, double q, double RT, double gamma);
 };
 

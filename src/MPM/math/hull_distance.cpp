@@ -22,8 +22,9 @@ static constexpr double ROUNDING =
 static constexpr double ZERO = 1.0e-12;    // of shares
 
 /* ----------------------------------------------------------------------
-   A corner is added, then those are left out that the point of least norm in the plane through all does not need. What is left to
-   gain ends at rounding: with a larger tolerance the direction would jump while rows of points turn
+   A corner is added, then those are left out that the point of least norm in the plane through all
+   does not need. What is left to gain ends at rounding: with a larger tolerance the direction would
+   jump while rows of points turn
 ------------------------------------------------------------------------- */
 
 void HullDistance::advance(const double *a, const double *b)
@@ -67,7 +68,8 @@ void HullDistance::advance(const double *a, const double *b)
   if (done) return;
   std::copy_n(now, 3, x);
 
-  // three corners in the plane, or four in space, that have the origin between them: the hulls overlap
+  // three corners in the plane, or four in space, that have the origin between them: the hulls
+  // overlap
 
   double largest = 0.0;
   for (int i = 0; i < n; i++) largest = std::max(largest, dot(corner[i], corner[i]));

@@ -10,8 +10,9 @@
 #define MPM_MATH_MATRIX_H
 
 // Vectors of three and matrices of 3x3 reals, row by row in plain arrays. T is a number or a SIMD
-// vector with one entry per point. The functions must be inlined: files that are compiled for different
-// instruction sets share this header, and an out-of-line copy made for one CPU must not run on another.
+// vector with one entry per point. The functions must be inlined: files that are compiled for
+// different instruction sets share this header, and an out-of-line copy made for one CPU must not
+// run on another.
 
 namespace MPM_NS {
 
@@ -34,8 +35,8 @@ template <class T> [[gnu::always_inline]] inline T determinant(const T *m)
       m[2] * (m[3] * m[7] - m[4] * m[6]);
 }
 
-/** Initializer {...} of the cofactors c of m: m c^T = (det m) I. This is no function, because a loop with
- *  omp simd stays scalar if it takes the address of an array. */
+/** Initializer {...} of the cofactors c of m: m c^T = (det m) I. This is no function, because a
+ *  loop with omp simd stays scalar if it takes the address of an array. */
 #define MPM_COFACTORS(m)                                                                 \
   {                                                                                      \
     m[4] * m[8] - m[5] * m[7], m[5] * m[6] - m[3] * m[8], m[3] * m[7] - m[4] * m[6],     \

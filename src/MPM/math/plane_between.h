@@ -13,18 +13,19 @@
 
 namespace MPM_NS {
 
-/** The plane that best separates points of two bodies, by logistic regression (J.A. Nairn, C.C. Hammerquist, G.D. Smith,
- *  Comput. Methods Appl. Mech. Eng. 362 (2020) 112859; here the measure is the likelihood, whose negative logarithm has a
- *  single minimum that Newton's method finds).
+/** The plane that best separates points of two bodies, by logistic regression (J.A. Nairn, C.C.
+ *  Hammerquist, G.D. Smith, Comput. Methods Appl. Mech. Eng. 362 (2020) 112859; here the measure is
+ *  the likelihood, whose negative logarithm has a single minimum that Newton's method finds).
  *
- *  For a point at r and c = (r, 1), the probability to belong to body b rather than body a is modeled as
- *  s(z) = 1/(1 + exp(-z)), z = phi . c. The plane is z = 0, and its normal is along n, the first three components of phi.
- *  phi minimizes
+ *  For a point at r and c = (r, 1), the probability to belong to body b rather than body a is
+ *  modeled as s(z) = 1/(1 + exp(-z)), z = phi . c. The plane is z = 0, and its normal is along n,
+ *  the first three components of phi. phi minimizes
  *
  *    sum_p w_p [ln(1 + exp(z_p)) - y_p z_p] + RIDGE/2 |n|^2,   y = 0 in a, 1 in b,
  *
- *  with weights w_p. The last term keeps n finite if a plane separates all points; the smaller it is, the closer the
- *  plane is to the one in the middle of the gap. Lengths are in units in which the distance of points is of order 1. */
+ *  with weights w_p. The last term keeps n finite if a plane separates all points; the smaller it
+ *  is, the closer the plane is to the one in the middle of the gap. Lengths are in units in which
+ *  the distance of points is of order 1. */
 struct PlaneBetween {
   static constexpr int ROUNDS = 6;    ///< Newton iterations: converged to 1e-4
   static constexpr int NREAL =
@@ -32,8 +33,8 @@ struct PlaneBetween {
 
   double phi[4] = {0.0, 0.0, 0.0, 0.0};
 
-  /** Adds a point at r[3] to sums[NREAL] of a round. The sums must include all points of all ranks before advance().
-   *  of_b: the point belongs to body b. */
+  /** Adds a point at r[3] to sums[NREAL] of a round. The sums must include all points of all ranks
+   *  before advance(). of_b: the point belongs to body b. */
   void add(double weight, const double *r, bool of_b, double *sums) const
   {
     const double c[4] = {r[0], r[1], r[2], 1.0};

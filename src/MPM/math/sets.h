@@ -28,7 +28,8 @@ class Sets {
   }
   /** Merges the sets of i and j. */
   void join(int i, int j) { parent[root(i)] = root(j); }
-  /** Representative item of the set of i, the same for all items of the set until the next join(). */
+  /** Representative item of the set of i, the same for all items of the set until the next
+   *  join(). */
   int root(int i)
   {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];

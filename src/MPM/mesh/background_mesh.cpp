@@ -83,7 +83,8 @@ void functions(int dim, const double *xi, double *N, double (*dN)[3])
   }
 }
 
-/** y = J^-1 b for the columns of J; returns det J. In the plane the third row and column are those of the identity. */
+/** y = J^-1 b for the columns of J; returns det J. In the plane the third row and column are those
+ *  of the identity. */
 double solve(const double J[9], const double *b, double *y)
 {
   const double C[9] = MPM_COFACTORS(J);
@@ -114,7 +115,8 @@ void find_map(const BackgroundMesh &mesh, BackgroundMesh::Cell &cell)
         const int *const c = CORNER[k];
         const int terms[8] = {1,           c[0],        c[1],        c[2],
                               c[0] * c[1], c[1] * c[2], c[2] * c[0], c[0] * c[1] * c[2]};
-        // in the plane, all corners have the same third coordinate, and terms with it are others again
+        // in the plane, all corners have the same third coordinate, and terms with it are others
+        // again
         const bool there = mesh.dim == 3 || m < 3 || m == 4;
         sum += there ? terms[m] * mesh.nodes[cell.node[k]][a] : 0.0;
       }
@@ -154,11 +156,16 @@ void map_back(const BackgroundMesh::Cell &cell, int dim, const double *x, const 
 
 constexpr double SIMPLEX[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
+/** The n <= 4 nodes of a side in ascending order, then -1. */
 std::array<int, 4> key_of(const int *node, const int *local, int n)
 {
   std::array<int, 4> key = {-1, -1, -1, -1};
-  for (int k = 0; k < n; k++) key[k] = node[local ? local[k] : k];
-  std::sort(key.begin(), key.begin() + n);
+  for (int k = 0; k < n; k++) {
+    const int next = node[local ? local[k] : k];
+    int place = k;
+    for (; place > 0 && key[place - 1] > next; place--) key[place] = key[place - 1];
+    key[place] = next;
+  }
   return key;
 }
 
@@ -211,7 +218,8 @@ void BackgroundMesh::add_cells(const Mesh &mesh, const std::string &part)
       }
     }
 
-    // the volume at each corner of a square or cube: shape functions must have a place for each point
+    // the volume at each corner of a square or cube: shape functions must have a place for each
+    // point
 
     const bool simplex = is_simplex(cell, dim);
     double volume = 0.0, N[8], dN[8][3], J[9], none[3] = {0.0, 0.0, 0.0}, y[3];
@@ -317,8 +325,8 @@ void BackgroundMesh::sort_into_bins()
 }
 
 /* ----------------------------------------------------------------------
-   Natural coordinates of x: of a simplex those of the nodes but the first one, else from -1 to 1. Returns by which share of
-   its width x is outside, and across which side to go to it
+   Natural coordinates of x: of a simplex those of the nodes but the first one, else from -1 to 1.
+   Returns by which share of its width x is outside, and across which side to go to it
 ------------------------------------------------------------------------- */
 
 double BackgroundMesh::natural(const Cell &cell, const double *x, double *xi, int &across) const
@@ -407,7 +415,8 @@ void BackgroundMesh::find(const double *x, int hint, Place &place) const
     return outside;
   };
 
-  // a walk ends where it would leave the mesh, around a corner of which the point may still be inside
+  // a walk ends where it would leave the mesh, around a corner of which the point may still be
+  // inside
 
   int across;
   const int longest = 100;
@@ -522,8 +531,9 @@ std::vector<BackgroundMesh::Face> BackgroundMesh::faces_of(const std::string &gr
   return list;
 }
 
-/** A quadrangle need not be flat: its area vector is half the cross product of its diagonals, and the integral of each of its
- *  functions is that over the bilinear surface, here by 2 x 2 points along that vector. */
+/** A quadrangle need not be flat: its area vector is half the cross product of its diagonals, and
+ *  the integral of each of its functions is that over the bilinear surface, here by 2 x 2 points
+ *  along that vector. */
 void BackgroundMesh::area(const Face &face, const std::vector<std::array<double, 3>> &positions,
                           double normal[3], double share[4]) const
 {

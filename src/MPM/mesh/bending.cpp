@@ -30,7 +30,8 @@ double norm(const double *a)
   return std::sqrt(dot(a, a));
 }
 
-/** Unit normal of the first three nodes, and with g also the gradients of their functions; returns the area. */
+/** Unit normal of the first three nodes, and with g also the gradients of their functions; returns
+ *  the area. */
 double normal_of(const double (*x)[3], double *n, double (*g)[3] = nullptr)
 {
   double a[3], b[3];
@@ -50,7 +51,8 @@ double normal_of(const double (*x)[3], double *n, double (*g)[3] = nullptr)
 
 }    // namespace
 
-/** Take the curvature across rims without moment that makes it none: the energy is least for that. */
+/** Take the curvature across rims without moment that makes it none: the energy is least for
+ *  that. */
 void BentTriangle::relax(double nu, double *change) const
 {
   double M[2] = {0.0, 0.0}, coupling = 0.0;
@@ -129,7 +131,8 @@ void BentTriangle::stiffness_sums(double nu, double *sum) const
 
 /* ---------------------------------------------------------------------- */
 
-/** Unit vectors along both lines and their lengths, and the angle; u: the directions to which each would turn the other. */
+/** Unit vectors along both lines and their lengths, and the angle; u: the directions to which each
+ *  would turn the other. */
 static double angle_of(int dim, const double (*x)[3], double *l, double (*u)[3])
 {
   double t[2][3];

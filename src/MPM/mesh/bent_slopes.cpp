@@ -92,7 +92,8 @@ struct Unfolded {
   void unfold(int a, int b, int c, const double *n, double *normal);
 };
 
-/** Node c of a triangle beyond the edge from a to b, which has the rest on its left, with the normal n. */
+/** Node c of a triangle beyond the edge from a to b, which has the rest on its left, with the
+ *  normal n. */
 void Unfolded::unfold(int a, int b, int c, const double *n, double *normal)
 {
   double edge[3], other[3];
@@ -131,8 +132,8 @@ Unfolded::Unfolded(const double (*places)[3], const bool *neighbors) : X(places)
   }
 }
 
-/** The smallest change of the sum of values at nodes that makes the slope along y at 0 exact for all surfaces of second order, and stays exact for planes. Returns
- *  the error that is left. */
+/** The smallest change of the sum of values at nodes that makes the slope along y at 0 exact for
+ *  all surfaces of second order, and stays exact for planes. Returns the error that is left. */
 double correct(const Place *at, const int *node, int n, double *c)
 {
   double size[2] = {0.0, 0.0};
@@ -187,8 +188,9 @@ double correct(const Place *at, const int *node, int n, double *c)
   return left < EXACT ? 0.0 : left;
 }
 
-/** Append what resists short waves, or linear curvatures, to the coefficients of a patch without creases that is not at a rim; returns the number of rows. Of a node that is there
- *  twice, only the first one is known. */
+/** Append what resists short waves, or linear curvatures, to the coefficients of a patch without
+ *  creases that is not at a rim; returns the number of rows. Of a node that is there twice, only
+ *  the first one is known. */
 int add_above(const Unfolded &all, const bool *again, double area, bool linear,
               double (*coefficients)[BentTriangle::MOST])
 {
@@ -245,7 +247,8 @@ double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool aw
       for (int a = 0; a < 3; a++) c[corners[a]] += 0.5 * slope[a];
     }
 
-    // the nodes of triangles at both sides of the edge and of their neighbors, and at a rim of those beyond, without creases
+    // the nodes of triangles at both sides of the edge and of their neighbors, and at a rim of
+    // those beyond, without creases
 
     int node[PATCH_NODES], nnode = 0;
     Place at[PATCH_NODES];

@@ -103,7 +103,8 @@ void CellVolumes::add(const Polygon &polygon, int64_t j, int64_t k)
     x[1] -= (double) j;
     x[2] -= (double) k;
   }
-  // what is below the cells that are asked for counts in none of them, and what is above is below no other
+  // what is below the cells that are asked for counts in none of them, and what is above is below
+  // no other
 
   const int64_t above_all = ranges[0].last + 1;
   clip(rest, 0, (double) ranges[0].first, -1.0, piece);
@@ -135,8 +136,8 @@ void CellVolumes::add(const Polygon &polygon, int64_t j, int64_t k)
   }
 }
 
-/** Integrals over the projection of a polygon, x relative to the lower corner of its cell, onto the plane of y and z: of the
- *  height x over it, and of its moments. */
+/** Integrals over the projection of a polygon, x relative to the lower corner of its cell, onto the
+ *  plane of y and z: of the height x over it, and of its moments. */
 void CellVolumes::add_piece(const Polygon &piece, Entry &entry)
 {
   for (std::size_t n = 1; n + 1 < piece.size(); n++) {

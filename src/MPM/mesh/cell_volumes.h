@@ -9,8 +9,8 @@
 #ifndef MPM_MESH_CELL_VOLUMES_H
 #define MPM_MESH_CELL_VOLUMES_H
 
-// The share of each cell of a lattice that is inside of a surface of triangles. Nothing here knows about
-// LAMMPS.
+// The share of each cell of a lattice that is inside of a surface of triangles. Nothing here knows
+// about LAMMPS.
 
 #include <array>
 #include <cstdint>
@@ -19,19 +19,19 @@
 
 namespace MPM_NS {
 
-/** For each cell of a lattice, the volume of the part of a body in it and the center of that part, exact to
- *  rounding. The body is the inside of a closed surface of triangles.
+/** For each cell of a lattice, the volume of the part of a body in it and the center of that part,
+ *  exact to rounding. The body is the inside of a closed surface of triangles.
  *
- *  A place is inside if a ray from it along +x leaves the body once more often than it enters it. Each
- *  triangle counts, with the sign of its normal, for the places from which it is seen along x. So the
- *  volume in a cell is a sum of integrals of polynomials over the parts of the triangles in its column of
- *  cells along x. Places around which the surface winds twice count twice. */
+ *  A place is inside if a ray from it along +x leaves the body once more often than it enters it.
+ *  Each triangle counts, with the sign of its normal, for the places from which it is seen along x.
+ *  So the volume in a cell is a sum of integrals of polynomials over the parts of the triangles in
+ *  its column of cells along x. Places around which the surface winds twice count twice. */
 class CellVolumes {
  public:
   using Point = std::array<double, 3>;
 
-  /** Integrals over the part of the body in a cell: its volume, and the position relative to the lower
-   *  corner of the cell. */
+  /** Integrals over the part of the body in a cell: its volume, and the position relative to the
+   *  lower corner of the cell. */
   struct Sums {
     double volume = 0.0;
     Point moment = {0.0, 0.0, 0.0};
@@ -42,9 +42,9 @@ class CellVolumes {
     int64_t first, last;
   };
 
-  /** Cell i has its lower corner at origin + i size. Only cells in the ranges [3] can be asked for; their
-   *  number bounds the effort, however far the surface reaches. Throws std::runtime_error if a range has
-   *  more than 1e9 cells. */
+  /** Cell i has its lower corner at origin + i size. Only cells in the ranges [3] can be asked for;
+   *  their number bounds the effort, however far the surface reaches. Throws std::runtime_error if
+   *  a range has more than 1e9 cells. */
   CellVolumes(const std::vector<std::array<Point, 3>> &triangles, const double *origin,
               const double *size, const Range *ranges);
 

@@ -22,7 +22,8 @@ namespace {
 
 constexpr double SHARP = 0.5;    // cosine of an angle that is no curvature any more
 
-/** The angle of a smooth edge, with a factor that makes sharp ones none; slope: its derivative by the angle. */
+/** The angle of a smooth edge, with a factor that makes sharp ones none; slope: its derivative by
+ *  the angle. */
 double smooth_angle(double s, double c, double *slope)
 {
   const double angle = std::atan2(s, c), q = (1.0 - c) / (1.0 - SHARP);
@@ -112,8 +113,8 @@ double volume_of_edge(const double (*x)[3], double factor, double (*gradient)[3]
   return factor * angle * size;
 }
 
-/** Area of a triangle with the angles at its edges, the one across from each node, over its flat area: that of the surface of second order
- *  above it, and the strips between these at edges. */
+/** Area of a triangle with the angles at its edges, the one across from each node, over its flat
+ *  area: that of the surface of second order above it, and the strips between these at edges. */
 double area_of_triangle(const double (*p)[2], const double *angle)
 {
   const double area =

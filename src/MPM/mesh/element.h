@@ -18,20 +18,21 @@ namespace MPM_NS {
 
 constexpr int MAX_ELEMENT_NODES = 8, MAX_ELEMENT_POINTS = 8;
 
-/** Gauss points of an element in its own coordinates: one for lines, triangles, and tetrahedra, 2x2 and
- *  2x2x2 for quadrangles and hexahedra (full integration). */
+/** Gauss points of an element in its own coordinates: one for lines, triangles, and tetrahedra, 2x2
+ *  and 2x2x2 for quadrangles and hexahedra (full integration). */
 struct ElementRule {
   int nnode, npoint, dim;
   double weight[MAX_ELEMENT_POINTS];
   double N[MAX_ELEMENT_POINTS][MAX_ELEMENT_NODES];        ///< shape functions at the points
   double dN[MAX_ELEMENT_POINTS][MAX_ELEMENT_NODES][3];    ///< their derivatives
 
-  /** Gradients g[nnode][3] of the shape functions at point q with respect to the positions x[nnode][3] of
-   *  the nodes. Returns the weight of the point as area or volume, negative for an inverted element. */
+  /** Gradients g[nnode][3] of the shape functions at point q with respect to the positions
+   *  x[nnode][3] of the nodes. Returns the weight of the point as area or volume, negative for an
+   *  inverted element. */
   double gradients(int q, const double (*x)[3], double (*g)[3]) const;
 
-  /** The same for a surface or a line in space (a line also in the plane): gradients along it; returns area
-   *  or length. */
+  /** The same for a surface or a line in space (a line also in the plane): gradients along it;
+   *  returns area or length. */
   double gradients_along(int q, const double (*x)[3], double (*g)[3]) const;
 
   /** Largest eigenvalue of the sum over the nodes of g x g, with the gradients g[nnode][3]. */

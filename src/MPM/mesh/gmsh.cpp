@@ -23,7 +23,8 @@ namespace {
 
 constexpr int64_t MAX_COUNT = 2000000000;    // nodes or elements
 
-/** Words of a file, which may be spread over lines at will, or bytes; knows the line for messages. */
+/** Words of a file, which may be spread over lines at will, or bytes; knows the line for
+ *  messages. */
 class Words {
  public:
   Words(std::istream &in, const std::string &name) : in(in), name(name), line(0), pos(0) {}
@@ -271,7 +272,8 @@ struct Reader {
     data.push_back(std::move(one));
   }
 
-  /** What is missing for a node or an element is not a number. Those of points, which are left out, are not looked for. */
+  /** What is missing for a node or an element is not a number. Those of points, which are left out,
+   *  are not looked for. */
   void sort_data()
   {
     std::unordered_map<int64_t, int> element_place;

@@ -9,8 +9,8 @@
 #ifndef MPM_MESH_GMSH_H
 #define MPM_MESH_GMSH_H
 
-// Meshes of linear elements, and the reader for Gmsh files (other files: mesh/mesh_file.h). Nothing here
-// knows about LAMMPS.
+// Meshes of linear elements, and the reader for Gmsh files (other files: mesh/mesh_file.h). Nothing
+// here knows about LAMMPS.
 
 #include <array>
 #include <cstdint>
@@ -24,7 +24,8 @@ namespace MPM_NS {
 
 /** Linear elements; their nodes are in Gmsh's order, which is that of VTK. */
 enum class ElementType : int {
-  /** A triangle and its neighbors, see mesh/bending.h. This type and the next two are never in a file. */
+  /** A triangle and its neighbors, see mesh/bending.h. This type and the next two are never in a
+   *  file. */
   TRIANGLE,
   QUAD,
   TETRAHEDRON,
@@ -95,43 +96,46 @@ struct Mesh {
   std::vector<std::array<double, 3>> nodes;
   std::vector<MeshElement> elements;
   std::map<std::pair<int, int>, std::string> groups;    ///< (dimension, tag) -> name
-  /** Sets from files in which an element can be in several sets; for other files, keep() fills this. */
+  /** Sets from files in which an element can be in several sets; for other files, keep() fills
+   *  this. */
   std::vector<MeshSet> sets;
   std::vector<MeshData> data;    ///< data of the file, if any
 
-  /** Keeps only the elements of a dimension (for example, drops the surface of a solid) and, if group is
-   *  not empty, of a physical group (name or tag) or set, and then only the nodes that these elements use.
-   *  Physical groups become sets, named by their tags if they have no name. Throws std::runtime_error if
-   *  nothing is left. */
+  /** Keeps only the elements of a dimension (for example, drops the surface of a solid) and, if
+   *  group is not empty, of a physical group (name or tag) or set, and then only the nodes that
+   *  these elements use. Physical groups become sets, named by their tags if they have no name.
+   *  Throws std::runtime_error if nothing is left. */
   void keep(int dim, const std::string &group = "");
 
-  /** Divides each element into elements of half its size along each edge, 4 for a triangle or quadrangle
-   *  and 8 for a solid. They inherit label, groups, and data of the element. They do not share nodes, and
-   *  data of nodes are dropped. */
+  /** Divides each element into elements of half its size along each edge, 4 for a triangle or
+   *  quadrangle and 8 for a solid. They inherit label, groups, and data of the element. They do not
+   *  share nodes, and data of nodes are dropped. */
   void halve_elements();
 
-  /** Reverses the numbering of the nodes of elements of a dimension whose size is negative (a body of
-   *  elements of dimension 2 has its normal along +z). */
+  /** Reverses the numbering of the nodes of elements of a dimension whose size is negative (a body
+   *  of elements of dimension 2 has its normal along +z). */
   void orient(int dim);
 
-  /** Throws std::runtime_error if two elements have the same nodes, as their mass would count twice. */
+  /** Throws std::runtime_error if two elements have the same nodes, as their mass would count
+   *  twice. */
   void check_repeated(const std::string &hint = "") const;
 
-  /** Numbers the nodes of the elements of a surface such that neighbors go around in the same sense. */
+  /** Numbers the nodes of the elements of a surface such that neighbors go around in the same
+   *  sense. */
   SurfaceKind orient_surface();
 
-  /** Appends patches and corners for the bending of a surface or of lines. Throws std::runtime_error if it
-   *  cannot bend somewhere. */
+  /** Appends patches and corners for the bending of a surface or of lines. Throws
+   *  std::runtime_error if it cannot bend somewhere. */
   void add_bending();
 
-  /** Area or volume of an element of the dimension of the mesh, negative if its nodes are numbered in the
-   *  wrong sense. */
+  /** Area or volume of an element of the dimension of the mesh, negative if its nodes are numbered
+   *  in the wrong sense. */
   double size(const MeshElement &) const;
 };
 
-/** Reads the Gmsh formats 2.2 and 4.1, ASCII or binary in either byte order. Point elements are left out,
- *  and sections that do not describe the mesh are skipped. Throws std::runtime_error with a message that
- *  begins with name:line. */
+/** Reads the Gmsh formats 2.2 and 4.1, ASCII or binary in either byte order. Point elements are
+ *  left out, and sections that do not describe the mesh are skipped. Throws std::runtime_error with
+ *  a message that begins with name:line. */
 Mesh read_gmsh(std::istream &, const std::string &name);
 
 /** The same from a file. */

@@ -12,8 +12,9 @@
 
 using namespace MPM_NS;
 
-// children of an element by numbers of its corners and of the middles between them: a child has as its corners the means of two
-// corners of its parent, {k,k} for the corner itself; a quadrangle and a hexahedron, the means of two opposite corners
+// children of an element by numbers of its corners and of the middles between them: a child has as
+// its corners the means of two corners of its parent, {k,k} for the corner itself; a quadrangle and
+// a hexahedron, the means of two opposite corners
 
 namespace {
 
@@ -28,7 +29,8 @@ const Children TRIANGLE = {4,
                             {{0, 2}, {1, 2}, {2, 2}},
                             {{0, 1}, {1, 2}, {0, 2}}}};
 
-// the octahedron that is left in the middle is divided along one diagonal (J. Bey, Computing 55 (1995) 355)
+// the octahedron that is left in the middle is divided along one diagonal (J. Bey, Computing 55
+// (1995) 355)
 
 const Children TETRAHEDRON = {8,
                               {{{0, 0}, {0, 1}, {0, 2}, {0, 3}},
@@ -43,8 +45,8 @@ const Children TETRAHEDRON = {8,
 }    // namespace
 
 /* ----------------------------------------------------------------------
-   Corners of the child at corner c of a square or cube: for each of its own corners k, the mean of the corners of the parent that
-   agree with c, or, along axes on which k and c differ, of all
+   Corners of the child at corner c of a square or cube: for each of its own corners k, the mean of
+   the corners of the parent that agree with c, or, along axes on which k and c differ, of all
 ------------------------------------------------------------------------- */
 
 static std::array<double, 3> corner_of_child(const Mesh &mesh, const MeshElement &e, int c, int k)

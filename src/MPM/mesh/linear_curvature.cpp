@@ -6,7 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// How the curvature of a surface changes within a triangle, from values at its nodes and those around it.
+// How the curvature of a surface changes within a triangle, from values at its nodes and those
+// around it.
 
 #include "mesh/bending.h"
 
@@ -26,7 +27,8 @@ double distance(const double *a, const double *b)
   return std::hypot(b[0] - a[0], b[1] - a[1]);
 }
 
-/** Cholesky's factors of a symmetric matrix, of which the lower half is given, in its place. False: it is singular. */
+/** Cholesky's factors of a symmetric matrix, of which the lower half is given, in its place. False:
+ *  it is singular. */
 bool factorize(double (*A)[5])
 {
   for (int i = 0; i < 5; i++) {
@@ -56,8 +58,9 @@ void solve(const double (*A)[5], double *v)
   }
 }
 
-/** Slopes along x and y at a corner, as sums over the values at nodes: those of the surface of second order through the corner that is
- *  nearest to the other nodes, the more so the closer they are. False: the nodes do not tell such a surface. */
+/** Slopes along x and y at a corner, as sums over the values at nodes: those of the surface of
+ *  second order through the corner that is nearest to the other nodes, the more so the closer they
+ *  are. False: the nodes do not tell such a surface. */
 bool find_slopes(const double (*at)[2], int n, int corner, double (*slope)[PATCH_NODES])
 {
   double P[PATCH_NODES][5], weight[PATCH_NODES], A[5][5] = {{0.0}}, size = 0.0;
@@ -92,7 +95,8 @@ bool find_slopes(const double (*at)[2], int n, int corner, double (*slope)[PATCH
 
 bool MPM_NS::linear_curvatures(const double (*at)[2], int n, double (*rows)[6])
 {
-  // at corners, and at the middles of the edges across from these, where the slope across is the mean of those at the ends, and that along the edge is that of a cubic
+  // at corners, and at the middles of the edges across from these, where the slope across is the
+  // mean of those at the ends, and that along the edge is that of a cubic
 
   double slope[6][2][PATCH_NODES], g[3][2];
   for (int k = 0; k < 3; k++)

@@ -305,7 +305,8 @@ class AbaqusReader {
     return nullptr;
   }
 
-  /** A node of a part at its place in the assembly: moved, and then turned around an axis by an angle in degrees (O. Rodrigues). */
+  /** A node of a part at its place in the assembly: moved, and then turned around an axis by an
+   *  angle in degrees (O. Rodrigues). */
   static std::array<double, 3> moved(const Instance &of, std::array<double, 3> x)
   {
     if (of.lines.empty()) return x;
@@ -330,8 +331,9 @@ class AbaqusReader {
     return x;
   }
 
-  /** What there is outside of parts, or the parts where instances put them; without instances each part once, where its nodes are. Sets of parts
-   *  have the elements of all instances, and each of several instances is a set. */
+  /** What there is outside of parts, or the parts where instances put them; without instances each
+   *  part once, where its nodes are. Sets of parts have the elements of all instances, and each of
+   *  several instances is a set. */
   void assemble()
   {
     if (parts.size() == 1) {
@@ -376,7 +378,8 @@ class AbaqusReader {
     }
   }
 
-  /** Elements of a set, by their numbers, and by other sets of the mesh. elements: places by number; null: numbers tell nothing. */
+  /** Elements of a set, by their numbers, and by other sets of the mesh. elements: places by
+   *  number; null: numbers tell nothing. */
   std::vector<int> members_of(const Late &from, const Mesh &of,
                               const std::unordered_map<int64_t, int> *elements) const
   {

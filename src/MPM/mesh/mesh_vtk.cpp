@@ -170,7 +170,8 @@ class VtkReader : private VtkCells {
     std::getline(in, line);
   }
 
-  /** Binary numbers begin after the line of their type, and have the most significant byte first. */
+  /** Binary numbers begin after the line of their type, and have the most significant byte
+   *  first. */
   template <class T> double number_as()
   {
     char raw[sizeof(T)];

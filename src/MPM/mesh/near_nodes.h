@@ -14,9 +14,9 @@
 
 namespace MPM_NS {
 
-/** Tells which nodes of a surface or a line are near each other along it, however it is folded: two nodes
- *  are near if a path along edges shorter than a given length connects them. Nothing here knows about
- *  LAMMPS. */
+/** Tells which nodes of a surface or a line are near each other along it, however it is folded: two
+ *  nodes are near if a path along edges shorter than a given length connects them. Nothing here
+ *  knows about LAMMPS. */
 class NearNodes {
  public:
   struct Edge {

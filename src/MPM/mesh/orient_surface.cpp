@@ -17,7 +17,8 @@ using namespace MPM_NS;
 
 namespace {
 
-/** A rim of an element: two nodes of a surface, one node of a line, and the sense in which the element goes along it. */
+/** A rim of an element: two nodes of a surface, one node of a line, and the sense in which the
+ *  element goes along it. */
 struct Rim {
   std::pair<int, int> nodes;
   int element;

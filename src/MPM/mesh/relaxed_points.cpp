@@ -128,7 +128,8 @@ bool RelaxedPoints::find_near(const Site &site, std::vector<Near> &near) const
 }
 
 /* ----------------------------------------------------------------------
-   Samples to the points that they are nearest to: boxes of samples are halved until few points can be that of any of them
+   Samples to the points that they are nearest to: boxes of samples are halved until few points can
+   be that of any of them
 ------------------------------------------------------------------------- */
 
 void RelaxedPoints::share_samples(const Site &site, const Box &box, const Near *begin,

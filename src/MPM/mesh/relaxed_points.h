@@ -21,16 +21,17 @@ namespace MPM_NS {
 
 /** Points of a body, each at the center of its own cell, where all cells have the wanted volumes.
  *
- *  The cell of a point is the part of the body that is nearest to it, where a weight of the point is
- *  subtracted from squared distances (power cells). In turn, points move to the centers of their cells (S.
- *  P. Lloyd, IEEE Trans. Inf. Theory 28 (1982) 129), and weights of points whose cells are too small grow
- *  (F. Aurenhammer et al., Algorithmica 20 (1998) 61). In this way the outer points arrange themselves in
- *  layers along the surface.
+ *  The cell of a point is the part of the body that is nearest to it, where a weight of the point
+ *  is subtracted from squared distances (power cells). In turn, points move to the centers of their
+ *  cells (S. P. Lloyd, IEEE Trans. Inf. Theory 28 (1982) 129), and weights of points whose cells
+ *  are too small grow (F. Aurenhammer et al., Algorithmica 20 (1998) 61). In this way the outer
+ *  points arrange themselves in layers along the surface.
  *
- *  The body consists of samples on a lattice that divides each site. All computations use integers: lengths
- *  in UNIT, which is 2^-16 of a site (along each axis, of its own spacing), and volumes in SITE, which is
- *  2^-36 of the volume of a site. So sums over samples are the same however the samples are spread over
- *  processes. All processes have all points, and each has some of the samples. */
+ *  The body consists of samples on a lattice that divides each site. All computations use integers:
+ *  lengths in UNIT, which is 2^-16 of a site (along each axis, of its own spacing), and volumes in
+ *  SITE, which is 2^-36 of the volume of a site. So sums over samples are the same however the
+ *  samples are spread over processes. All processes have all points, and each has some of the
+ *  samples. */
 class RelaxedPoints {
  public:
   static constexpr int64_t UNIT = (int64_t) 1 << 16;          ///< length of a site in these units
@@ -39,27 +40,27 @@ class RelaxedPoints {
   using Place = std::array<int64_t, 3>;
   using Sum = std::function<void(std::vector<int64_t> &)>;    ///< sums over all processes, in place
 
-  /** The lattice has sites 0 to n - 1 along each axis; in 2d there is one along z. periodic: site n is site
-   *  0 again. */
+  /** The lattice has sites 0 to n - 1 along each axis; in 2d there is one along z. periodic: site n
+   *  is site 0 again. */
   RelaxedPoints(int dim, const Place &n, const std::array<bool, 3> &periodic);
 
-  /** Adds a point at x, in sites. share: the share of the volume that it should have, relative to the
-   *  shares of the others. Must be the same on all processes. */
+  /** Adds a point at x, in sites. share: the share of the volume that it should have, relative to
+   *  the shares of the others. Must be the same on all processes. */
   void add_point(const double *x, double share);
 
-  /** Place of sample k of m along each axis in its site, along axis d. Samples do not lie in rows: each is
-   *  displaced within its part of the site such that no two have the same place along any axis. So a cell
-   *  that grows a little gains only a few samples at a time. */
+  /** Place of sample k of m along each axis in its site, along axis d. Samples do not lie in rows:
+   *  each is displaced within its part of the site such that no two have the same place along any
+   *  axis. So a cell that grows a little gains only a few samples at a time. */
   static int64_t sample(int dim, int m, const int *k, int d);
 
-  /** Adds the samples of a site: m along each axis, an even number. Samples with a mark belong to the body
-   *  (sample i, j, k has the mark i + m (j + m k); no marks: all samples do). Together they have this
-   *  volume, and they are displaced by move. */
+  /** Adds the samples of a site: m along each axis, an even number. Samples with a mark belong to
+   *  the body (sample i, j, k has the mark i + m (j + m k); no marks: all samples do). Together
+   *  they have this volume, and they are displaced by move. */
   void add_site(const Place &site, int m, const std::vector<char> &marks, int64_t volume,
                 const Place &move);
 
-  /** Moves the points this many times. Returns false if any samples are farther than REACH sites from all
-   *  points. */
+  /** Moves the points this many times. Returns false if any samples are farther than REACH sites
+   *  from all points. */
   bool relax(int times, const Sum &);
   static constexpr int REACH = 4;
 

@@ -16,7 +16,8 @@ using namespace MPM_NS;
 
 namespace {
 
-// of a polynomial that is left without those before, below which it is one of these; square of what is left of a node
+// of a polynomial that is left without those before, below which it is one of these; square of what
+// is left of a node
 constexpr double SAME = 1.0e-6, NONE = 0.01;
 
 /** Take the parts along unit vectors off, twice for round-off; returns the length that is left. */

@@ -167,7 +167,8 @@ class ObjReader {
     triangulate(polygon);
   }
 
-  /** All triangles around a corner, if there is one from which all look to the side of the polygon. */
+  /** All triangles around a corner, if there is one from which all look to the side of the
+   *  polygon. */
   void triangulate(const std::vector<Point> &p)
   {
     const std::size_t n = p.size();

@@ -34,7 +34,8 @@ double area_of(const Corners &corners, const std::array<int, 3> &t)
   return 0.5 * norm(cross(corners[t[1]] - corners[t[0]], corners[t[2]] - corners[t[0]]));
 }
 
-/** Begin with the smallest number: the same triangle twice is the same then, and one turned is not. */
+/** Begin with the smallest number: the same triangle twice is the same then, and one turned is
+ *  not. */
 std::array<int, 3> rotated(std::array<int, 3> t)
 {
   std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -75,8 +76,8 @@ bool runs(const std::array<int, 3> &t, int a, int b)
   return (t[0] == a && t[1] == b) || (t[1] == a && t[2] == b) || (t[2] == a && t[0] == b);
 }
 
-/** From one triangle to the next over edges that two of them have, to find those that hang together and
- *  look to one side, up to the sign of all. */
+/** From one triangle to the next over edges that two of them have, to find those that hang together
+ *  and look to one side, up to the sign of all. */
 std::size_t turn_around(const Corners &corners, Triangles &triangles)
 {
   std::vector<std::array<int, 3>> next(triangles.size(), {-1, -1, -1});    // over each edge
@@ -122,8 +123,9 @@ std::size_t turn_around(const Corners &corners, Triangles &triangles)
 }    // namespace
 
 /* ----------------------------------------------------------------------
-   The edges that triangles run along more often in one direction than in the other are the boundary of
-   the surface, which has none itself: a cone over each part of it closes the surface, whatever it looks like
+   The edges that triangles run along more often in one direction than in the other are the boundary
+   of the surface, which has none itself: a cone over each part of it closes the surface, whatever
+   it looks like
 ------------------------------------------------------------------------- */
 
 SurfaceHoles MPM_NS::patch_surface(Corners &corners, Triangles &triangles)

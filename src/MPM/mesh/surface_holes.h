@@ -30,11 +30,11 @@ struct SurfaceHoles {
   bool none() const { return edges + turned + repeated == 0; }
 };
 
-/** Closes a surface: along each edge, as many triangles run forward as backward afterward, so that its
- *  winding number is an integer everywhere. Repeated triangles are removed. Triangles that face another
- *  side than their neighbors are turned; among connected triangles, the side with the larger area decides.
- *  The edges of a hole are joined to its center. triangles: indices of corners. Patches and their centers
- *  are appended. */
+/** Closes a surface: along each edge, as many triangles run forward as backward afterward, so that
+ *  its winding number is an integer everywhere. Repeated triangles are removed. Triangles that face
+ *  another side than their neighbors are turned; among connected triangles, the side with the
+ *  larger area decides. The edges of a hole are joined to its center. triangles: indices of
+ *  corners. Patches and their centers are appended. */
 SurfaceHoles patch_surface(std::vector<std::array<double, 3>> &corners,
                            std::vector<std::array<int, 3>> &triangles);
 

@@ -252,8 +252,8 @@ void SurfaceMesh::normals()
   }
 }
 
-/** Normals of edges, and parts of the surface that hang together, without crossing a sharp edge or at
- *  all. */
+/** Normals of edges, and parts of the surface that hang together, without crossing a sharp edge or
+ *  at all. */
 void SurfaceMesh::find_parts()
 {
   const double sharp = std::sqrt(0.5);
@@ -297,8 +297,8 @@ std::vector<SurfaceMesh::Shell> SurfaceMesh::find_shells() const
 }
 
 /* ----------------------------------------------------------------------
-   Volumes add up, and the sign of the closest triangle tells inside from outside, only if closed parts
-   do not reach into each other and look outward, or inward as the walls of cavities
+   Volumes add up, and the sign of the closest triangle tells inside from outside, only if closed
+   parts do not reach into each other and look outward, or inward as the walls of cavities
 ------------------------------------------------------------------------- */
 
 static std::string describe(const Point &x)
@@ -330,8 +330,9 @@ void SurfaceMesh::check_shells(const std::string &name) const
 }
 
 /* ----------------------------------------------------------------------
-   Is a closed part inside of another one? Its edges are followed in steps as long as the distance. What
-   is known of a corner, a distance that it has at least, with the sign, tells of edges that are shorter
+   Is a closed part inside of another one? Its edges are followed in steps as long as the distance.
+   What is known of a corner, a distance that it has at least, with the sign, tells of edges that
+   are shorter
 ------------------------------------------------------------------------- */
 
 bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::string &name) const
@@ -424,8 +425,8 @@ int SurfaceMesh::build(int first, int last)
 }
 
 /* ----------------------------------------------------------------------
-   closest point of a triangle (a, b, c) to x; feature: 0 face, 1 to 3 edges ab, bc, ca, 4 to 6 corners.
-   The regions of the plane are told apart by the signs of barycentric products
+   closest point of a triangle (a, b, c) to x; feature: 0 face, 1 to 3 edges ab, bc, ca, 4 to 6
+   corners. The regions of the plane are told apart by the signs of barycentric products
 ------------------------------------------------------------------------- */
 
 Point SurfaceMesh::closest_on(const int corner[3], const Point &x, int &feature) const

@@ -24,9 +24,9 @@ class WindingNumber;
 
 /** Options for reading a surface. */
 struct SurfaceOptions {
-  /** Accept surfaces with holes, with triangles that face the wrong way, and of parts that intersect: see
-   *  patch_surface(). The inside is where the winding number is above one half. Only inside() and the
-   *  properties of the surface as a whole are available then. */
+  /** Accept surfaces with holes, with triangles that face the wrong way, and of parts that
+   *  intersect: see patch_surface(). The inside is where the winding number is above one half. Only
+   *  inside() and the properties of the surface as a whole are available then. */
   bool leaky = false;
   double turn[3][3] = {
       {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};    ///< rotation applied to the positions in the file
@@ -35,20 +35,20 @@ struct SurfaceOptions {
 /** Surface of a body, made of triangles.
  *
  *  Distances come from the closest triangle, found in a tree of boxes, with the sign of the normal
- *  there; at edges and corners that is the mean normal weighted with angles (J.A. Baerentzen,
- *  H. Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243). A coarse grid of distances, made once,
- *  answers most questions without a search: a point is no closer to the surface than the distance at
- *  the center of its cell less its distance from that center.
+ *  there; at edges and corners that is the mean normal weighted with angles (J.A. Baerentzen, H.
+ *  Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243). A coarse grid of distances, made once,
+ *  answers most questions without a search: a point is no closer to the surface than the distance
+ *  at the center of its cell less its distance from that center.
  */
 class SurfaceMesh {
  public:
   using Point = std::array<double, 3>;
 
-  /** Reads a surface from the bytes of a file, see read_surface(). Positions are turned, multiplied by
-   *  scale, and moved by shift. Corners closer than 1e-6 of the size of the body are merged. Throws
-   *  std::runtime_error, with name in the message, if the file is invalid, if the surface is not closed, or
-   *  if its closed parts have no volume, intersect, or face the wrong way (inward, except for walls of
-   *  cavities). A surface that is inside out as a whole is turned. */
+  /** Reads a surface from the bytes of a file, see read_surface(). Positions are turned, multiplied
+   *  by scale, and moved by shift. Corners closer than 1e-6 of the size of the body are merged.
+   *  Throws std::runtime_error, with name in the message, if the file is invalid, if the surface is
+   *  not closed, or if its closed parts have no volume, intersect, or face the wrong way (inward,
+   *  except for walls of cavities). A surface that is inside out as a whole is turned. */
   SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift,
               const SurfaceOptions &options = SurfaceOptions());
   ~SurfaceMesh();
@@ -56,15 +56,16 @@ class SurfaceMesh {
   /** Distance of x from the surface, negative inside. closest: the closest point of the surface. */
   double distance(const Point &x, Point &closest) const;
 
-  /** As distance() if the surface is nearer than the cutoff. Otherwise the cutoff, negative inside, and
-   *  closest is not set. start: a triangle that may be near (-1: none), replaced by the closest one. It
-   *  shortens the search and does not change the result. */
+  /** As distance() if the surface is nearer than the cutoff. Otherwise the cutoff, negative inside,
+   *  and closest is not set. start: a triangle that may be near (-1: none), replaced by the closest
+   *  one. It shortens the search and does not change the result. */
   double distance_within(const Point &x, double cutoff, Point &closest, int &start) const;
 
-  /** As distance(), with the outward unit normal along the line through x and the closest point; on the
-   *  surface it is the mean normal. If several points are equally close (to 1e-6 of the size of the body),
-   *  it is the mean of their directions, so that it has the symmetry of the body and does not depend on
-   *  rounding errors. It is zero if that leaves no direction, as at the center of a ball. */
+  /** As distance(), with the outward unit normal along the line through x and the closest point; on
+   *  the surface it is the mean normal. If several points are equally close (to 1e-6 of the size of
+   *  the body), it is the mean of their directions, so that it has the symmetry of the body and
+   *  does not depend on rounding errors. It is zero if that leaves no direction, as at the center
+   *  of a ball. */
   double distance_and_normal(const Point &x, Point &normal) const;
 
   /** Where a ball touches the surface. */
@@ -74,12 +75,13 @@ class SurfaceMesh {
     int part;
   };
 
-  /** For each part of the surface (see nparts), finds the closest point that is seen from the side of x,
-   *  within the cutoff, unless an adjacent point beyond the edge of the part is closer. The list has no
-   *  more than most entries and begins with the closest one. Returns their number. */
+  /** For each part of the surface (see nparts), finds the closest point that is seen from the side
+   *  of x, within the cutoff, unless an adjacent point beyond the edge of the part is closer. The
+   *  list has no more than most entries and begins with the closest one. Returns their number. */
   int touches(const Point &x, double cutoff, Touch *list, int most) const;
 
-  /** Lower bound of the distance, without a search: positive outside, negative inside; 0: unknown. */
+  /** Lower bound of the distance, without a search: positive outside, negative inside; 0:
+   *  unknown. */
   double bound(const Point &x) const;
 
   /** Is x inside of the body or on its surface? */
@@ -95,7 +97,8 @@ class SurfaceMesh {
   std::vector<std::array<Point, 3>>
   soup() const;          ///< corners of all triangles, including patches
   SurfaceHoles holes;    ///< repairs of a leaky surface
-  /** Does a leaky surface wind twice, or backward, around some places? Its volume counts them so. */
+  /** Does a leaky surface wind twice, or backward, around some places? Its volume counts them
+   *  so. */
   bool overlaps = false;
 
  private:

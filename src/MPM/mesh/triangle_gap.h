@@ -14,10 +14,10 @@
 
 namespace MPM_NS {
 
-/** Largest distance of any place in a triangle from the nearest corner, from the lengths of the three
- *  sides. Without an obtuse angle it is the radius of the circle through the corners. With one, the center
- *  of that circle lies outside, and the place is on the longest side, equally far from one of its ends and
- *  from the opposite corner. */
+/** Largest distance of any place in a triangle from the nearest corner, from the lengths of the
+ *  three sides. Without an obtuse angle it is the radius of the circle through the corners. With
+ *  one, the center of that circle lies outside, and the place is on the longest side, equally far
+ *  from one of its ends and from the opposite corner. */
 inline double triangle_gap(double a, double b, double c)
 {
   if (a < b) std::swap(a, b);

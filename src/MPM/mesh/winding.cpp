@@ -76,7 +76,8 @@ int WindingNumber::build(int first, int last)
   return me;
 }
 
-/** Solid angle of a triangle: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125. */
+/** Solid angle of a triangle: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983)
+ *  125. */
 static double solid_angle(const std::array<Point, 3> &t, const Point &x)
 {
   const Point a = t[0] - x, b = t[1] - x, c = t[2] - x;

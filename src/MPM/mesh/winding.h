@@ -16,12 +16,13 @@
 
 namespace MPM_NS {
 
-/** Generalized winding number of a surface: the solid angle of its triangles as seen from a place, over 4
- *  pi. It is 1 inside of a closed surface with outward normals, 0 outside, and something in between for a
- *  surface with holes (A. Jacobson, L. Kavan, O. Sorkine-Hornung, ACM Trans. Graph. 32 (2013) 33).
- *  Triangles far from the place are combined as a dipole with its first moments in a tree of boxes (G.
- *  Barill, N.G. Dickson, R. Schmidt, D.I.W. Levin, A. Jacobson, ACM Trans. Graph. 37 (2018) 43). The cost
- *  grows with the logarithm of their number, and the error is less than 0.01. */
+/** Generalized winding number of a surface: the solid angle of its triangles as seen from a place,
+ *  over 4 pi. It is 1 inside of a closed surface with outward normals, 0 outside, and something in
+ *  between for a surface with holes (A. Jacobson, L. Kavan, O. Sorkine-Hornung, ACM Trans. Graph.
+ *  32 (2013) 33). Triangles far from the place are combined as a dipole with its first moments in a
+ *  tree of boxes (G. Barill, N.G. Dickson, R. Schmidt, D.I.W. Levin, A. Jacobson, ACM Trans. Graph.
+ *  37 (2018) 43). The cost grows with the logarithm of their number, and the error is less than
+ *  0.01. */
 class WindingNumber {
  public:
   using Point = std::array<double, 3>;

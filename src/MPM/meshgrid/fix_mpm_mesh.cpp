@@ -15,7 +15,7 @@
 #include "field/mpm_integrators.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_time_limit.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "meshgrid/fix_mpm_mesh_contact.h"

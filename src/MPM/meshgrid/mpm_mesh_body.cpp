@@ -18,7 +18,7 @@
 #include "field/mpm_time_limit.h"
 #include "fix.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "mesh/element.h"

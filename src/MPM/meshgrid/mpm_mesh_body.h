@@ -12,7 +12,7 @@
 #include "base/mpm_state.h"
 #include "declare/option.h"
 #include "field/mpm_point_batches.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "mesh/background_mesh.h"
 #include "meshgrid/mpm_mesh_conditions.h"
 #include "meshgrid/mpm_mesh_ranks.h"

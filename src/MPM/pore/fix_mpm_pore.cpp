@@ -70,7 +70,8 @@ FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) :
                 [this](int, double *row) {
                   row[0] = initial_value;
                 });
-  // declared even if water does not wait now: a run that continues from a restart file may have other conditions
+  // declared even if water does not wait now: a run that continues from a restart file may have
+  // other conditions
   if (options.can_wait()) state.declare(points.since, "mpm/pore:since");
   if (options.formulation == MPMPoreOptions::U_V_P)
     state.declare(points.inertia, "mpm/pore:flow", domain->dimension);
@@ -218,7 +219,8 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   flow.watch.warn_of_contact();
   flow.is_implicit = !flow.wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();
   if (!options.waits()) flow.end_wait();
-  // soils that dry have no other formulation, and bodies that relax to rest have no motion of their own
+  // soils that dry have no other formulation, and bodies that relax to rest have no motion of their
+  // own
   flow.watch.start(options.formulation == MPMPoreOptions::U_P && !flow.is_implicit &&
                    !options.can_dry() && find_fixes<FixMPMRelax>(lmp).empty());
   if (flow.is_implicit) checks.check_implicit();
@@ -266,7 +268,8 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
 }
 
 /* ----------------------------------------------------------------------
-   pores of soils without retention are full of water, also above the water table, where suction holds it
+   pores of soils without retention are full of water, also above the water table, where suction
+   holds it
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::setup_points()
@@ -332,8 +335,8 @@ bool FixMPMPore::surface_force(MPMField &field, const std::vector<char> &near,
 }
 
 /* ----------------------------------------------------------------------
-   the energy that the water stores, and the part of its kinetic energy that mass and velocity of points do not include,
-   for compute mpm/energy and the energy watch
+   the energy that the water stores, and the part of its kinetic energy that mass and velocity of
+   points do not include, for compute mpm/energy and the energy watch
 ------------------------------------------------------------------------- */
 
 void FixMPMPore::account(double *values) const

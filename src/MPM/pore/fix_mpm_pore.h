@@ -26,8 +26,9 @@ FixStyle(mpm/pore,FixMPMPore);
 
 namespace LAMMPS_NS {
 
-/** Pore water in the points of soils, which move with the velocity of the soil: options, calls by LAMMPS and fix mpm. Treats the flow of the water,
- *  without its own inertia (u-p) or with it (u-v-p), and the water pressure in the forces. */
+/** Pore water in the points of soils, which move with the velocity of the soil: options, calls by
+ *  LAMMPS and fix mpm. Treats the flow of the water, without its own inertia (u-p) or with it
+ *  (u-v-p), and the water pressure in the forces. */
 class FixMPMPore : public FixMPMState, public MPMPhysics, public MPMPorePressure {
  public:
   FixMPMPore(class LAMMPS *, int, char **);

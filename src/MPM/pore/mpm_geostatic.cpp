@@ -13,7 +13,7 @@
 
    for all functions psi_k of the height that the velocity of nodes can have: those of planes of nodes, of
    which the three lowest move in proportion to their distance from the floor, as walls want it
-   (fix_mpm_boundary_cut.cpp). Psi' are what forces have as gradients. The stress rho g (y - top) is not quite
+   (mpm_line_constraint.cpp). Psi' are what forces have as gradients. The stress rho g (y - top) is not quite
    a solution: sums over points are not integrals where the functions are cut by the surface, and forces of
    1/64 to 1/32 of the weight of a cell are left over. With
 
@@ -39,7 +39,7 @@
 #include "field/mpm_point_batches.h"
 #include "field/mpm_stencil.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 
 #include <algorithm>

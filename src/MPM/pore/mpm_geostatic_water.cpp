@@ -36,7 +36,7 @@
 #include "field/mpm_field.h"
 #include "field/mpm_point_batches.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "pore/fix_mpm_mixture.h"
 

@@ -67,7 +67,7 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_point_batches.h"
 #include "force.h"
-#include "material/batch.h"
+#include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
 #include "update.h"
@@ -576,7 +576,7 @@ void MPMMixture::correct_drag_at_walls()
       at_water[d] += change * normal[d];
       node.impulse[d] -= reaction[d];
     }
-    push.wall->bear(*soil.field, node.soil, reaction);
+    push.wall->add_reaction(*soil.field, node.soil, reaction);
   }
 }
 

@@ -7,38 +7,42 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Soil and its pore water as one set of points with the velocity v of the soil (u-p). With the pressure p of
-   the water, compression positive,
+   Soil and its pore water as one set of points with the velocity v of the soil (u-p). With the
+   pressure p of the water, compression positive,
 
      rho dv/dt = div(sigma' - alpha p I) + rho g,
      S dp/dt = - alpha div v - div w,   w = - k (grad p - rho_f g),   S = n/K_f + (alpha - n)/K_s,
 
-   sigma' is the stress of the material, w the volume of water that flows through a unit of area, and k the
-   mobility. The acceleration of the water relative to that of the soil is neglected, and both accelerations
-   are in the equation for w; mpm_pore_motion.cpp has both (u-v-p). With Forchheimer's term,
+   sigma' is the stress of the material, w the volume of water that flows through a unit of area,
+   and k the mobility. The acceleration of the water relative to that of the soil is neglected, and
+   both accelerations are in the equation for w; mpm_pore_motion.cpp has both (u-v-p). With
+   Forchheimer's term,
    -(grad p - rho_f g) = w/k + b |w| w, which is a quadratic equation for the length of w.
 
    On nodes, with C_p = S_p V_p, and D the matrix of sum_p alpha V_p N_ip grad N_jp,
 
      p_i = sum_p C_p N_ip (p_p + g_p . (x_i - x_p))/C_i,    M dv/dt = ... + D^T p,    C dp/dt = - D v - ...,
 
-   so that the pressure sum_i N_ip p_i of each point acts in forces, and the volume that the motion squeezes
-   out goes to nodes with the same weights: the water stores the work that the pressure takes from the motion,
-   for any position of points in their cells. Both matter. If points had their own pressures in forces, several
-   points per cell would ask for more constraints than the velocities of the nodes can satisfy (locking). As D
-   maps onto what D^T sees, motion never excites pressures that make no force on nodes, such as one that
-   alternates from node to node. Only other changes of the pressure do: drained faces, see mpm_pore_surface.cpp.
+   so that the pressure sum_i N_ip p_i of each point acts in forces, and the volume that the motion
+   squeezes out goes to nodes with the same weights: the water stores the work that the pressure
+   takes from the motion, for any position of points in their cells. Both matter. If points had
+   their own pressures in forces, several points per cell would ask for more constraints than the
+   velocities of the nodes can satisfy (locking). As D maps onto what D^T sees, motion never excites
+   pressures that make no force on nodes, such as one that alternates from node to node. Only other
+   changes of the pressure do: drained faces, see mpm_pore_surface.cpp.
 
-   Time. The update of p uses the new v: symplectic Euler, stable up to 2/omega of undrained waves without flow.
-   An explicit step of the flow multiplies a pressure by a = 1 - lambda dt; together they are stable up to
-   (omega dt)^2 < 2 (1 + a): not at all near the explicit limit a = -1. Stages of RKL2 have a > 0 whatever
-   their number is (their greatest share is 2b < 1 with b = (s^2 + s - 2)/(2 s^2 + 2 s)). Hence stages begin
-   at half of that limit, and waves and flow do not reduce each other's limit. A flow for several steps
-   (mpm_pore_wait.cpp) has one stage up to the full limit: this is the limit of nodes at a corner that hardly see a
-   point, and of points in the middle of cells, where alternating pressures make no force, while a > 0 for the
-   pressures that waves excite.
+   Time. The update of p uses the new v: symplectic Euler, stable up to 2/omega of undrained waves
+   without flow. An explicit step of the flow multiplies a pressure by a = 1 - lambda dt; together
+   they are stable up to (omega dt)^2 < 2 (1 + a): not at all near the explicit limit a = -1. Stages
+   of RKL2 have a > 0 whatever their number is (their greatest share is 2b < 1 with b = (s^2 + s -
+   2)/(2 s^2 + 2 s)). Hence stages begin at half of that limit, and waves and flow do not reduce
+   each other's limit. A flow for several steps (mpm_pore_wait.cpp) has one stage up to the full
+   limit: this is the limit of nodes at a corner that hardly see a point, and of points in the
+   middle of cells, where alternating pressures make no force, while a > 0 for the pressures that
+   waves excite.
 
-   The motion changes the volume of a point by exactly det(I + dt L) - 1, and water fills the change.
+   The motion changes the volume of a point by exactly det(I + dt L) - 1, and water fills the
+   change.
 ------------------------------------------------------------------------- */
 
 #include "pore/mpm_pore.h"
@@ -119,7 +123,8 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
   suction.reset();
   if (dries) suction = std::make_unique<MPMPoreSuction>(lmp, field, water, content);
   init_layers();
-  // with interfaces, a line through the values of nodes does not give the permeability next to the surface
+  // with interfaces, a line through the values of nodes does not give the permeability next to the
+  // surface
   const bool varies = !layers && std::any_of(soils.begin(), soils.end(), [](const auto &s) {
     return s.of.law != MPMPoreSoil::CONSTANT;
   });
@@ -138,12 +143,14 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
   }
 }
 
-/** Sets up means next to interfaces for soils of different permeability in one field (mpm_layer_mean.cpp). A single soil whose permeability
- *  depends on its porosity needs none: the permeability varies as smoothly as the strain, and MPMPoreSurface::mobility_to_surface() covers
- *  the flow through a crust at a drained surface. In soil that dries, the means are those of full pores, and each point has its own
- *  relative permeability: this changes by orders of magnitude within a front, and with means across the front, water would not get into
- *  dry soil. The square of the flow has a mean across interfaces, too; along them points then keep their own resistance, as flows
- *  with one gradient and different laws have no common one. */
+/** Sets up means next to interfaces for soils of different permeability in one field
+ *  (mpm_layer_mean.cpp). A single soil whose permeability depends on its porosity needs none: the
+ *  permeability varies as smoothly as the strain, and MPMPoreSurface::mobility_to_surface() covers
+ *  the flow through a crust at a drained surface. In soil that dries, the means are those of full
+ *  pores, and each point has its own relative permeability: this changes by orders of magnitude
+ *  within a front, and with means across the front, water would not get into dry soil. The square
+ *  of the flow has a mean across interfaces, too; along them points then keep their own resistance,
+ *  as flows with one gradient and different laws have no common one. */
 void MPMPore::init_layers()
 {
   layers.reset();
@@ -204,8 +211,8 @@ MPMPoreMotion::Pores MPMPore::pores(const Soil &s, int i, double J, double mobil
           quadratic.empty() ? 0.0 : quadratic[i]};
 }
 
-/** Mobility for the flow through the surface. The flow there is not known yet, so the gradient of the step before is
- *  used. */
+/** Mobility for the flow through the surface. The flow there is not known yet, so the gradient of
+ *  the step before is used. */
 double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, const double *row) const
 {
   if (motion) return motion->response(i, pores(s, i, J, mobility));
@@ -224,8 +231,8 @@ double MPMPore::most_of_layers(int i, double k) const
   return quadratic.empty() ? layers->most(i) : std::max(k, 1.0 / linear_mean[i]);
 }
 
-/** Finds interfaces. With drag by the square of the flow, they are where the resistance changes, at the flow that points have by their
- *  gradient. */
+/** Finds interfaces. With drag by the square of the flow, they are where the resistance changes, at
+ *  the flow that points have by their gradient. */
 void MPMPore::find_layers(const MPMRows &state, const double *formula)
 {
   const int dim = field.lattice.dim;
@@ -272,7 +279,8 @@ void MPMPore::find_layers(const MPMRows &state, const double *formula)
 
 MPMPoreResistance MPMPore::at_interface(int i) const
 {
-  // across to soil without pores there is no flow; the result must be neither infinite nor, by differences, negative
+  // across to soil without pores there is no flow; the result must be neither infinite nor, by
+  // differences, negative
   const auto least = MPMLayerMean::LEAST;
   if (quadratic.empty())
     return {{1.0 / std::max(layers->across(i), least), 1.0 / std::max(layers->along(i), least)},
@@ -280,7 +288,8 @@ MPMPoreResistance MPMPore::at_interface(int i) const
   return {{linear_mean[i], volumes[i] / conductance[i]}, {quadratic_mean[i], quadratic[i]}};
 }
 
-/** Limits gradients and pressures of points whose soil can dry, see MPMPoreSuction::limit_slope(). */
+/** Limits gradients and pressures of points whose soil can dry, see
+ *  MPMPoreSuction::limit_slope(). */
 void MPMPore::limit_slopes(const Soil &s, int first, int n, const MPMRows &state,
                            MPMNodeScalar::Rows row) const
 {
@@ -293,7 +302,8 @@ void MPMPore::limit_slopes(const Soil &s, int first, int n, const MPMRows &state
   }
 }
 
-/** Changes the volume of grains and water of points by the change of temperatures after the step before. */
+/** Changes the volume of grains and water of points by the change of temperatures after the step
+ *  before. */
 void MPMPore::expand(const Soil &s, int first, int n, const double *J, const double *V)
 {
   for (int p = 0; p < n && s.temperature >= 0; p++) {
@@ -383,9 +393,9 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
 }
 
 /* ----------------------------------------------------------------------
-   alternates between the best fit of nodes to values and gradients, and of gradients to nodes. Inside a body a
-   linear pressure is found at once; next to surfaces, where nodes have points on one side, the error falls
-   with each iteration
+   alternates between the best fit of nodes to values and gradients, and of gradients to nodes.
+   Inside a body a linear pressure is found at once; next to surfaces, where nodes have points on
+   one side, the error falls with each iteration
 ------------------------------------------------------------------------- */
 
 void MPMPore::find_gradients(const MPMRows &state, const double *formula)
@@ -491,8 +501,8 @@ void MPMPore::take_off()
 }
 
 /* ----------------------------------------------------------------------
-   int N p n dA = int (p grad N + N grad p) dV, where the first term is the force of the pressure on nodes:
-   nothing is left inside the soil, and at the surface it is the force of the water
+   int N p n dA = int (p grad N + N grad p) dV, where the first term is the force of the pressure on
+   nodes: nothing is left inside the soil, and at the surface it is the force of the water
 ------------------------------------------------------------------------- */
 
 void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &near,

@@ -63,7 +63,8 @@ void MPMPoreChecks::check_soils() const
   }
 }
 
-/** Bulk modulus of the soil without its water, for new points: by a compression that is small, and slow for any viscosity. */
+/** Bulk modulus of the soil without its water, for new points: by a compression that is small, and
+ *  slow for any viscosity. */
 static double bulk_modulus(const Material &material)
 {
   constexpr double SMALL = 1.0e-6, LONG = 1.0e12;
@@ -74,8 +75,9 @@ static double bulk_modulus(const Material &material)
   return (point.pressure() - before) / (1.0 - point.batch.J[0]);
 }
 
-/** Checks soils with grains that are not rigid. The moduli of grains and soil give the coefficient of Biot, 1 - K/Ks. No arrangement of
- *  grains is stiffer than their share of the volume (Voigt), so this coefficient is not below the porosity. */
+/** Checks soils with grains that are not rigid. The moduli of grains and soil give the coefficient
+ *  of Biot, 1 - K/Ks. No arrangement of grains is stiffer than their share of the volume (Voigt),
+ *  so this coefficient is not below the porosity. */
 void MPMPoreChecks::check_grains()
 {
   constexpr double CLOSE = 0.1, ROUNDED = 1.001;    // coefficients of Biot; numbers of few digits

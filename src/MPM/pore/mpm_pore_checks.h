@@ -32,13 +32,16 @@ class MPMPoreChecks : protected Pointers {
   void check_soils() const;
   /** Checks soils with grains that are not rigid, once. */
   void check_grains();
-  /** Warns of soils without points, as with the ID of another material, where the ground stays dry, and of soils that are lighter
-   *  than their water, whose grains have a negative weight; without gravity, this is a way to allow longer steps. here: which soils
-   *  have points on this rank. Collective. */
+  /** Warns of soils without points, as with the ID of another material, where the ground stays dry,
+   *  and of soils that are lighter than their water, whose grains have a negative weight; without
+   *  gravity, this is a way to allow longer steps. here: which soils have points on this rank.
+   *  Collective. */
   void warn_of_soils(const std::vector<int> &here, bool has_weight) const;
-  /** Checks options that implicit steps cannot have: their equations are linear in the pressure of nodes. */
+  /** Checks options that implicit steps cannot have: their equations are linear in the pressure of
+   *  nodes. */
   void check_implicit() const;
-  /** Checks that the mass that moves by itself is less than all mass, and that nodes have accelerations. */
+  /** Checks that the mass that moves by itself is less than all mass, and that nodes have
+   *  accelerations. */
   void check_motion(const Fix &, MPMField &) const;
 
  private:

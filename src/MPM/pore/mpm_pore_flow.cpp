@@ -31,13 +31,15 @@ using namespace MPM_NS;
 
 // longest wait for the next flow: node spacings that waves travel, and explicit limits of the flow
 static constexpr double MOST_SPACINGS = 2.5, MOST_LIMITS = 10.0;
-// points that are farther apart than this many node spacings are as stiff as a lattice can be; their waves have the frequency 2/crossing
+// points that are farther apart than this many node spacings are as stiff as a lattice can be;
+// their waves have the frequency 2/crossing
 static constexpr double FINE = 0.6;
-// root of the mean square of slopes of points in layers (MPMPore::Layers), equal to the frequency of their waves times crossing;
-// the lattice damps waves up to this frequency in MOST_SPACINGS
+// root of the mean square of slopes of points in layers (MPMPore::Layers), equal to the frequency
+// of their waves times crossing; the lattice damps waves up to this frequency in MOST_SPACINGS
 static constexpr double SLOW = 1.45;
-// longest wait with auto, over the time in which flow crosses a layer that is so thin that the pressure changes across it by all of its
-// range: in explicit limits it is 6 THIN times the square of the thickness in node spacings
+// longest wait with auto, over the time in which flow crosses a layer that is so thin that the
+// pressure changes across it by all of its range: in explicit limits it is 6 THIN times the square
+// of the thickness in node spacings
 static constexpr double THIN = 0.02;
 // factor within which times are equal on paper, as sums of ranks differ by round-off
 static constexpr double NEARLY = 1.0 + 1.0e-6;
@@ -78,8 +80,9 @@ void MPMPoreFlow::take_motion(MPMField &field)
   if (step_flows) in(field).take_motion(waited.time + field.step_dt());
 }
 
-/** Must water flow in each step if every is not given? It must with effects that cannot wait, with input that varies from step to step,
- *  and with free surfaces, whose flow is more exact if less of it comes at once. */
+/** Must water flow in each step if every is not given? It must with effects that cannot wait, with
+ *  input that varies from step to step, and with free surfaces, whose flow is more exact if less of
+ *  it comes at once. */
 bool MPMPoreFlow::needs_each_step() const
 {
   const bool differs =
@@ -96,8 +99,9 @@ bool MPMPoreFlow::needs_each_step() const
       !find_fixes<FixMPMImplicit>(lmp).empty();
 }
 
-/** Ends a wait if water flows in each step from now on. The run before, or that of a restart file, may have ended between two flows:
- *  then points get all of their pressure, and the next flow also covers the time of the wait. */
+/** Ends a wait if water flows in each step from now on. The run before, or that of a restart file,
+ *  may have ended between two flows: then points get all of their pressure, and the next flow also
+ *  covers the time of the wait. */
 void MPMPoreFlow::end_wait()
 {
   for (int i = 0; i < atom->nlocal && options.can_wait(); i++) {
@@ -179,8 +183,9 @@ void MPMPoreFlow::weigh_points()
   for (const auto &mine : fields) mine->weigh_points(points.pressure);
 }
 
-/** Is there flow in the step that begins? With auto, flow takes one stage, which costs least and is as exact as flow in each step
- *  even where the soil is soft compared with its water and drains through a curved surface. */
+/** Is there flow in the step that begins? With auto, flow takes one stage, which costs least and is
+ *  as exact as flow in each step even where the soil is soft compared with its water and drains
+ *  through a curved surface. */
 bool MPMPoreFlow::is_time_to_flow() const
 {
   if (!options.waits() || !rates_known ||
@@ -193,11 +198,13 @@ bool MPMPoreFlow::is_time_to_flow() const
   return waited.time + 2.0 * fields[0]->field.step_dt() > most * NEARLY;
 }
 
-/** Flow that starts and stops makes waves, whose length is the distance that waves travel in between. The lattice damps those of up to
- *  some node spacings; longer ones grow with each flow. In between, points have pressures of their own, of which a flow keeps only what
- *  nodes see. A wave that nodes do not see grows if it has turned by more than half of its period by then. For points that are a
- *  node spacing apart its frequency is 2/crossing; with closer points none is above 1.4/crossing, for which the former bound is enough,
- *  together with the damping of such waves by transfers of velocities. */
+/** Flow that starts and stops makes waves, whose length is the distance that waves travel in
+ *  between. The lattice damps those of up to some node spacings; longer ones grow with each flow.
+ *  In between, points have pressures of their own, of which a flow keeps only what nodes see. A
+ *  wave that nodes do not see grows if it has turned by more than half of its period by then. For
+ *  points that are a node spacing apart its frequency is 2/crossing; with closer points none is
+ *  above 1.4/crossing, for which the former bound is enough, together with the damping of such
+ *  waves by transfers of velocities. */
 double MPMPoreFlow::longest_wait() const
 {
   if (!coarse) return MOST_SPACINGS * crossing;
@@ -212,7 +219,8 @@ double MPMPoreFlow::longest_flow() const
   return options.most_stages < 3 ? 0.5 : MPMSuperStep::reach(options.most_stages);
 }
 
-/** Number of stages. One is enough up to the explicit limit if steps of the motion are shorter than half of it (see mpm_pore.cpp). */
+/** Number of stages. One is enough up to the explicit limit if steps of the motion are shorter than
+ *  half of it (see mpm_pore.cpp). */
 int MPMPoreFlow::count_stages(double duration, double limit) const
 {
   const bool one = duration <= 0.5 * limit || (waited.steps > 0.0 && duration <= limit * NEARLY);
@@ -271,8 +279,8 @@ void MPMPoreFlow::find_thin_layers()
   thinned = range > 0.0 ? all.steepest / (range * range) : 0.0;
 }
 
-/** Finds whether points are coarse: wide, or in layers that are a node spacing apart along one axis and close along
- *  another. */
+/** Finds whether points are coarse: wide, or in layers that are a node spacing apart along one axis
+ *  and close along another. */
 void MPMPoreFlow::find_coarse_points(double widest)
 {
   coarse = widest > FINE;
@@ -344,7 +352,8 @@ void MPMPoreFlow::advance()
   flows_known = false;
 }
 
-/** Takes the pressures at the end of an implicit step, which were solved together with the motion. */
+/** Takes the pressures at the end of an implicit step, which were solved together with the
+ *  motion. */
 void MPMPoreFlow::take_solution()
 {
   const double dt = fields[0]->field.step_dt();

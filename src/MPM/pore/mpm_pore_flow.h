@@ -29,17 +29,19 @@ namespace LAMMPS_NS {
 struct MPMPorePoints {
   MPMRows pressure;    ///< [n][1+dim] pressure and its gradient
   MPMRows inertia;     ///< [n][dim] flow with inertia, see MPMPoreMotion
-  double *since =
-      nullptr;    ///< [n] J after the last flow, if water does not flow in each step; 0: unknown
-  double *warmth =
-      nullptr;    ///< [n] temperature at the last thermal expansion of grains and water
+  /** [n] J after the last flow, if water does not flow in each step; 0: unknown */
+  double *since = nullptr;
+  /** [n] temperature at the last thermal expansion of grains and water */
+  double *warmth = nullptr;
   double *content = nullptr;    ///< [n] volume of water, if a soil can dry (MPMPoreSuction)
 };
 
-/** The flow of pore water in all fields: in which steps water flows, for which time, in how many stages, and how much has come in.
+/** The flow of pore water in all fields: in which steps water flows, for which time, in how many
+ *  stages, and how much has come in.
  *
- *  Flow in each step is simple. It may also be in one of several steps, for the duration of all of them: then it costs less, and the
- *  pressure of points between two flows is that of undrained deformation. */
+ *  Flow in each step is simple. It may also be in one of several steps, for the duration of all of
+ *  them: then it costs less, and the pressure of points between two flows is that of undrained
+ *  deformation. */
 class MPMPoreFlow : protected Pointers {
  public:
   MPMPoreWatch watch;
@@ -57,8 +59,9 @@ class MPMPoreFlow : protected Pointers {
   void clear();                ///< removes all fields
   MPMPore &add(MPMField &);    ///< adds a field
   void add_wet(MPMPore &);     ///< says that this field has water
-  /** Must water flow in each step if every is not given? It must with effects that cannot wait, with input that varies from step
-   *  to step, and with free surfaces, whose flow is more exact if less of it comes at once. */
+  /** Must water flow in each step if every is not given? It must with effects that cannot wait,
+   *  with input that varies from step to step, and with free surfaces, whose flow is more exact if
+   *  less of it comes at once. */
   bool needs_each_step() const;
   void
   find_crossing();    ///< finds the time for waves by the stiffness of the water to cross a cell
@@ -107,14 +110,15 @@ class MPMPoreFlow : protected Pointers {
   MPMSuperStep steps;        // for the pressures of all fields together
   std::vector<double> formula_values;    // [n] permeability from variables
 
-  // [part of the surface] volume of water that came in, followed by its energy (pressure times volume), this rank's
-  // share: came: so far; in_step: in the last step; present: rate in a stage of a step; flows: rate in the last step,
-  // of all ranks
+  // [part of the surface] volume of water that came in, followed by its energy (pressure times
+  // volume), this rank's share: came: so far; in_step: in the last step; present: rate in a stage
+  // of a step; flows: rate in the last step, of all ranks
   std::vector<double> came, in_step, present, flows;
   double dt_last = 0.0;
   bool flows_known = true;
 
-  // greatest rates of the last step on all ranks [1/time], so that a run in two parts takes the steps of one
+  // greatest rates of the last step on all ranks [1/time], so that a run in two parts takes the
+  // steps of one
   double conducted = 0.0, exchanged = 0.0;
   double thinned = std::numeric_limits<double>::max();    // see find_thin_layers(); max(): unknown
   bool rates_known = false;

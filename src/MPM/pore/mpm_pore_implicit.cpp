@@ -13,7 +13,7 @@
      C (p - p0) = - sum_p alpha dV_p N_ip + dt (flow to the node by p) - sum_p b_p V_p grad N_ip . grad (p - p0).
 
    Capacities, permeabilities, and the positions of the flow are those at the start of the step, as in explicit ones;
-   fix mpm/implicit solves for p and the motion together (mpm_implicit_pressure.cpp).
+   fix mpm/implicit solves for p and the motion together (mpm_coupled_pressure.cpp).
 
    The last term keeps pressures from alternating. Where water has no time to flow through a cell, the soil responds to the pressure
    by D K^-1 D^T with its stiffness K. For a wave with q radians from node to node, this should be 1/M, with the modulus M of soil that

@@ -7,50 +7,54 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Soil (velocity v, acceleration a) and pore water (velocity v + w/n) as one set of points (u-v-p; O.C.
-   Zienkiewicz, T. Shiomi, Int. J. Numer. Anal. Methods Geomech. 8 (1984) 71, without convective terms). With
-   the density rho of both and R the resistance to the flow w,
+   Soil (velocity v, acceleration a) and pore water (velocity v + w/n) as one set of points (u-v-p;
+   O.C. Zienkiewicz, T. Shiomi, Int. J. Numer. Anal. Methods Geomech. 8 (1984) 71, without
+   convective terms). With the density rho of both and R the resistance to the flow w,
 
      rho a + rho_f dw/dt = div(sigma' - alpha p I) + rho g
      rho_f/n dw/dt       = - grad p + rho_f (g - a) - R w
      S dp/dt             = - alpha div v - div w
 
-   Unknowns are the velocity of the soil on nodes, as without water, the pressure on nodes (mpm_pore.cpp), and
-   w in points. With w in points, walls need no boundary condition for it, and may be anywhere in a cell: no
-   water goes through where the weak form of div w ends. Points do not lose w to the lattice in transfers, and
-   where drag dominates, the equations on nodes become those of u-p. The alternative, a separate velocity of the
-   water on nodes, needs a second set of walls, and damps the part of w that transfers do not see.
+   Unknowns are the velocity of the soil on nodes, as without water, the pressure on nodes
+   (mpm_pore.cpp), and w in points. With w in points, walls need no boundary condition for it, and
+   may be anywhere in a cell: no water goes through where the weak form of div w ends. Points do not
+   lose w to the lattice in transfers, and where drag dominates, the equations on nodes become those
+   of u-p. The alternative, a separate velocity of the water on nodes, needs a second set of walls,
+   and damps the part of w that transfers do not see.
 
-   Drag. In a step with the duration t everything except w is constant, and w is integrated exactly: with the rate of
-   drag r = n R/rho_f and the mean f = (1 - exp(-r t))/(r t) of its decay,
+   Drag. In a step with the duration t everything except w is constant, and w is integrated exactly:
+   with the rate of drag r = n R/rho_f and the mean f = (1 - exp(-r t))/(r t) of its decay,
 
      w' = w + t f n (A - a),    A = g - (grad p + R w)/rho_f.
 
-   That is a decaying difference without acceleration, and Darcy's law where r t is large, so that drag does not
-   limit the step: leapfrog of waves with this factor is stable up to 2/omega of the waves without drag
-   (f < (1 + exp(-r t))/2).
+   That is a decaying difference without acceleration, and Darcy's law where r t is large, so that
+   drag does not limit the step: leapfrog of waves with this factor is stable up to 2/omega of the
+   waves without drag (f < (1 + exp(-r t))/2).
 
-   Inertia. A point gives rho_f V dw/dt = mu (A - a) to the water, where mu = f n rho_f V is the mass that
-   moves by itself. On nodes, with sums of mu_p N_ip as with masses,
+   Inertia. A point gives rho_f V dw/dt = mu (A - a) to the water, where mu = f n rho_f V is the
+   mass that moves by itself. On nodes, with sums of mu_p N_ip as with masses,
 
      (m_i - mu_i) a_i = F_i - sum_p mu_p N_ip A_p,    a_p = sum_i N_ip a_i,
 
-   so that both unknowns are solved at once, node by node. Walls and contact act on the mass m_i - mu_i of the
-   node. Momentum is kept to round-off, as mu_i is the sum of mu_p N_ip. The inverse of the mass matrix,
-   (1/s, -N^T/s; -N/s, n/(rho_f V) + N N^T/s) with s = m_i - mu_i, is symmetric and positive, as soil is heavier
-   than its water: waves have an energy which this integration keeps bounded.
+   so that both unknowns are solved at once, node by node. Walls and contact act on the mass m_i -
+   mu_i of the node. Momentum is kept to round-off, as mu_i is the sum of mu_p N_ip. The inverse of
+   the mass matrix, (1/s, -N^T/s; -N/s, n/(rho_f V) + N N^T/s) with s = m_i - mu_i, is symmetric and
+   positive, as soil is heavier than its water: waves have an energy which this integration keeps
+   bounded.
 
-   Surface. Where the pressure p_s outside is given, the flow out of an area A with the normal m is that of
-   the points next to it, Q = A m . <w>. With the same weights c_p of this mean, the remaining pressure
-   difference drives these points by A m c_p (p - p_s)/V_p in addition to - grad p. In this way, the weak form
-   of the second equation includes a given pressure. What this term takes from the flow goes to the pressure, so
-   it is part of the same symmetric system as everything else. One pressure makes no flow: one that rises to the
-   surface with just the gradient that balances its own push, for which nodes beyond the surface leave room. So the
-   flow that p - p_s would make from rest in a step is added. A linear pressure is a solution, and
-   the resistance bounds every flow: a surface that is loaded faster than water can leave does not make pressures
+   Surface. Where the pressure p_s outside is given, the flow out of an area A with the normal m is
+   that of the points next to it, Q = A m . <w>. With the same weights c_p of this mean, the
+   remaining pressure difference drives these points by A m c_p (p - p_s)/V_p in addition to - grad
+   p. In this way, the weak form of the second equation includes a given pressure. What this term
+   takes from the flow goes to the pressure, so it is part of the same symmetric system as
+   everything else. One pressure makes no flow: one that rises to the surface with just the gradient
+   that balances its own push, for which nodes beyond the surface leave room. So the flow that p -
+   p_s would make from rest in a step is added. A linear pressure is a solution, and the resistance
+   bounds every flow: a surface that is loaded faster than water can leave does not make pressures
    oscillate.
 
-   A resistance that depends on w (Forchheimer) is taken at the flow w* that an implicit step would leave,
+   A resistance that depends on w (Forchheimer) is taken at the flow w* that an implicit step would
+   leave,
    |w*| (1 + t n/rho_f (R_0 + R_1 |w*|)) = |w + t n/rho_f (rho_f g - grad p)|: steady flow is exact.
 ------------------------------------------------------------------------- */
 
@@ -181,8 +185,9 @@ void MPMPoreMotion::begin_point(int i, const Pores &pores, const MPMPoreResistan
   for (int d = 0; d < dim; d++) mine[d] = free[d] - unit * resistance * w[d];
 }
 
-/** Starts the step of w at an interface. Drag differs across and along the interface, and so does the mean of its decay; the stronger
- *  drag determines the effect of the acceleration of the soil on the flow in both directions. */
+/** Starts the step of w at an interface. Drag differs across and along the interface, and so does
+ *  the mean of its decay; the stronger drag determines the effect of the acceleration of the soil
+ *  on the flow in both directions. */
 void MPMPoreMotion::begin_at_interface(int i, const Pores &pores, const MPMPoreResistance &r,
                                        const double *normal, const double *w, const double *free)
 {
@@ -252,8 +257,8 @@ void MPMPoreMotion::take_off()
 }
 
 /* ----------------------------------------------------------------------
-   Includes the ledger, which has seen nodes without the mass that moves by itself: for the soil, the inertia of
-   the water is a force, whose work is like that of the pressure
+   Includes the ledger, which has seen nodes without the mass that moves by itself: for the soil,
+   the inertia of the water is a force, whose work is like that of the pressure
 ------------------------------------------------------------------------- */
 
 void MPMPoreMotion::move()
@@ -306,8 +311,8 @@ void MPMPoreMotion::flow_at_nodes(const Wanted &wanted, std::vector<double> &of_
 }
 
 /* ----------------------------------------------------------------------
-   c^2 of A x = c^2 B x with the stiffness A = (E + alpha^2/S, alpha/S; alpha/S, 1/S) and the inertia
-   B = (rho, rho_f; rho_f, rho_f/n)
+   c^2 of A x = c^2 B x with the stiffness A = (E + alpha^2/S, alpha/S; alpha/S, 1/S) and the
+   inertia B = (rho, rho_f; rho_f, rho_f/n)
 ------------------------------------------------------------------------- */
 
 double MPMPoreMotion::wave_speed(double c, double of_both, double biot, double storage,

@@ -19,13 +19,13 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Pore water with a velocity of its own in the points of one field (u-v-p): its inertia in the momentum
- *  equation of soil and water, and its motion relative to the soil.
+/** Pore water with a velocity of its own in the points of one field (u-v-p): its inertia in the
+ *  momentum equation of soil and water, and its motion relative to the soil.
  *
- *  Points keep rows of dim reals: J w, where the flow w is the volume of water that passes an area of the
- *  soil per time [velocity], and J is the ratio of volumes. The momentum of soil and water of a point is mass
- *  times velocity of the point, plus the density of the water times the initial volume of the point times
- *  this row. */
+ *  Points keep rows of dim reals: J w, where the flow w is the volume of water that passes an area
+ *  of the soil per time [velocity], and J is the ratio of volumes. The momentum of soil and water
+ *  of a point is mass times velocity of the point, plus the density of the water times the initial
+ *  volume of the point times this row. */
 class MPMPoreMotion : protected Pointers {
  public:
   /** Is a block needed? Null: all blocks are. */
@@ -42,22 +42,23 @@ class MPMPoreMotion : protected Pointers {
   /** density: of the water; gravity: force per mass. */
   MPMPoreMotion(class LAMMPS *, MPMField &, double density, const double *gravity);
 
-  /** Start of a step: no point has water until begin_point() is called for it. flow: rows of the points. */
+  /** Start of a step: no point has water until begin_point() is called for it. flow: rows of the
+   *  points. */
   void begin_step(const MPMRows &flow);
   /** Sets the gradient of the pressure in a point. */
   void set_gradient(int i, const double *gradient);
-  /** Call when nodes have mass, and before begin_point(). of_nodes: [node][8] gradients of pressure that
-   *  drive the water to the surface, and 0. */
+  /** Call when nodes have mass, and before begin_point(). of_nodes: [node][8] gradients of pressure
+   *  that drive the water to the surface, and 0. */
   void add_gradients(std::vector<double> &of_nodes, const Wanted &);
-  /** r, normal: for a point at an interface of soils, the resistance there and the normal, in place of the
-   *  resistance of the pores. */
+  /** r, normal: for a point at an interface of soils, the resistance there and the normal, in place
+   *  of the resistance of the pores. */
   void begin_point(int i, const Pores &, const MPMPoreResistance *r = nullptr,
                    const double *normal = nullptr);
-  /** Flow per gradient of pressure that a step produces in point i from rest: the mobility, or less if the
-   *  step is too short for the water to speed up. */
+  /** Flow per gradient of pressure that a step produces in point i from rest: the mobility, or less
+   *  if the step is too short for the water to speed up. */
   double response(int i, const Pores &) const;
-  /** Call when nodes have mass, momentum, and forces, summed over ranks. Subtracts from these the part of the
-   *  water that moves relative to the soil. */
+  /** Call when nodes have mass, momentum, and forces, summed over ranks. Subtracts from these the
+   *  part of the water that moves relative to the soil. */
   void take_off();
   /** Call when nodes have their final velocities. Restores their mass, and finds the new flows. */
   void move();
@@ -66,8 +67,9 @@ class MPMPoreMotion : protected Pointers {
   /** [node][8] sums of volume times flow, 0, and sum of volume. */
   void flow_at_nodes(const Wanted &, std::vector<double> &of_nodes);
 
-  /** Speed of the fastest wave in a material whose own wave speed is c, where soil and water move without
-   *  drag. biot, storage [1/pressure]: of the soil; of_both: density of soil and water together. */
+  /** Speed of the fastest wave in a material whose own wave speed is c, where soil and water move
+   *  without drag. biot, storage [1/pressure]: of the soil; of_both: density of soil and water
+   *  together. */
   double wave_speed(double c, double of_both, double biot, double storage, double porosity) const;
   double memory_usage() const;
 

@@ -25,10 +25,11 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** Sums that measure the acceleration that u-p neglects. The gradient of the pressure lacks rho_f times the acceleration of the soil, by
- *  which the resistance would dissipate the power K (rho_f dv/dt)^2. From one step to another, the root of the sum of K (rho_f v)^2 changes
- *  at most by dt times the root of that power, and by as much if a motion keeps its shape, as a standing wave does: this bound
- *  needs no accelerations of points. */
+/** Sums that measure the acceleration that u-p neglects. The gradient of the pressure lacks rho_f
+ *  times the acceleration of the soil, by which the resistance would dissipate the power K (rho_f
+ *  dv/dt)^2. From one step to another, the root of the sum of K (rho_f v)^2 changes at most by dt
+ *  times the root of that power, and by as much if a motion keeps its shape, as a standing wave
+ *  does: this bound needs no accelerations of points. */
 MPMPore::Inertia MPMPore::inertia(const MPMRows &state) const
 {
   const int dim = field.lattice.dim;
@@ -61,18 +62,19 @@ MPMPore::Inertia MPMPore::inertia(const MPMRows &state) const
 }
 
 /* ----------------------------------------------------------------------
-   The part r_p of the pressures of points that nodes do not see decays in the time in which flow crosses a cell, as in
-   the conduction of heat (mpm_conduction.cpp). It also decays in about 1/relax of the time in which a wave crosses a
-   cell, except its smooth part
+   The part r_p of the pressures of points that nodes do not see decays in the time in which flow
+   crosses a cell, as in the conduction of heat (mpm_conduction.cpp). It also decays in about
+   1/relax of the time in which a wave crosses a cell, except its smooth part
 
      s_p = sum_i N_ip sum_q C_q N_iq r_q/C_i,  sum_p C_p s_p = sum_p C_p r_p,
 
-   as nodes give it back to points without slopes. On the way from nodes to points and back an alternating pressure
-   keeps 0.61 of itself with slopes, 0.14 without, and a linear one all, with the errors k^4 and k^2 for a wave with
-   the number k: per time, k^6 is removed. So a pressure that alternates with almost no force on nodes, which
-   a load makes that the lattice does not resolve, vanishes in some crossings of a cell, and one over many cells
-   stays. Without s this would be k^4, and affect pressures in long runs of slow flow. Points need no pass of their
-   own for s: nodes have its values before they give points theirs.
+   as nodes give it back to points without slopes. On the way from nodes to points and back an
+   alternating pressure keeps 0.61 of itself with slopes, 0.14 without, and a linear one all, with
+   the errors k^4 and k^2 for a wave with the number k: per time, k^6 is removed. So a pressure that
+   alternates with almost no force on nodes, which a load makes that the lattice does not resolve,
+   vanishes in some crossings of a cell, and one over many cells stays. Without s this would be k^4,
+   and affect pressures in long runs of slow flow. Points need no pass of their own for s: nodes
+   have its values before they give points theirs.
 ------------------------------------------------------------------------- */
 
 double MPMPore::rate_of_waves() const
@@ -85,9 +87,10 @@ double MPMPore::rate_of_lag() const
   return slowest / (field.lattice.h * field.lattice.h) + rate_of_waves();
 }
 
-/** Loss of smooth pressures in one flow. A flow that follows steps without flow removes everything that nodes do not see, except its smooth
- *  part. Nodes see, and give back to points, 1 - 0.056 (k h)^4 of a wave with the number k with its slopes, and 1 - (k h)^2/4
- *  without slopes, from the moments of quadratic functions. Soil that gives way holds the rest. */
+/** Loss of smooth pressures in one flow. A flow that follows steps without flow removes everything
+ *  that nodes do not see, except its smooth part. Nodes see, and give back to points, 1 - 0.056 (k
+ *  h)^4 of a wave with the number k with its slopes, and 1 - (k h)^2/4 without slopes, from the
+ *  moments of quadratic functions. Soil that gives way holds the rest. */
 MPMPore::Smoothing MPMPore::smoothing(double duration) const
 {
   constexpr double PHASE = MathConst::MY_2PI / Smoothing::WAVELENGTH, SQUARE = PHASE * PHASE,

@@ -19,14 +19,14 @@
 namespace LAMMPS_NS {
 
 /** Pore water: its bulk modulus [pressure], its density, and the divisor that makes permeabilities
- *  mobilities. The divisor is the unit weight [pressure/length] for hydraulic conductivities, or the
- *  viscosity [pressure time] for permeabilities in units of area. */
+ *  mobilities. The divisor is the unit weight [pressure/length] for hydraulic conductivities, or
+ *  the viscosity [pressure time] for permeabilities in units of area. */
 struct MPMPoreWater {
   double bulk = 0.0, density = 0.0, resistance = 0.0;
 };
 
-/** Properties of the pores of a material. Volumes are those of the present state, and J is their ratio to the
- *  initial ones. */
+/** Properties of the pores of a material. Volumes are those of the present state, and J is their
+ *  ratio to the initial ones. */
 struct MPMPoreSoil {
   enum Law { CONSTANT, KOZENY, SQUARED, FORMULA };
 
@@ -37,10 +37,10 @@ struct MPMPoreSoil {
   std::string formula;    ///< name of a variable, with v_
   double biot = 1.0;      ///< coefficient of Biot
   double grains = 0.0;    ///< bulk modulus of the grains [pressure]; 0: rigid
-  double quadratic =
-      0.0;    ///< gradient of pressure per square of flow (Forchheimer); see quadratic_at()
-  double diameter =
-      0.0;    ///< of grains, from which the quadratic term follows (Ergun); 0: use the number above
+  /** gradient of pressure per square of flow (Forchheimer); see quadratic_at() */
+  double quadratic = 0.0;
+  /** of grains, from which the quadratic term follows (Ergun); 0: use the number above */
+  double diameter = 0.0;
   bool warms = false;        ///< are of_grains and of_water given?
   double of_grains = 0.0;    ///< volumetric thermal expansion of the grains [1/temperature]
   double of_water = 0.0;     ///< the same of the water
@@ -58,8 +58,8 @@ struct MPMPoreSoil {
   /** The same, but at least a hundredth of the initial porosity, where it must not vanish. */
   double pores_at(double J) const { return std::max(porosity_at(J), 0.01 * porosity); }
 
-  /** Kozeny and Carman: proportional to n^3/(1 - n)^2, from its initial value; nothing flows without
-   *  pores. */
+  /** Kozeny and Carman: proportional to n^3/(1 - n)^2, from its initial value; nothing flows
+   *  without pores. */
   double permeability_at(double J) const
   {
     if (law == KOZENY) {
@@ -75,8 +75,8 @@ struct MPMPoreSoil {
   /** Does Darcy's law hold, without a quadratic term? */
   bool is_linear() const { return quadratic == 0.0 && diameter == 0.0; }
 
-  /** Part of the gradient of the pressure beyond Darcy's law, per square of the flow. density: of the water,
-   *  in units of pressure over velocity squared. */
+  /** Part of the gradient of the pressure beyond Darcy's law, per square of the flow. density: of
+   *  the water, in units of pressure over velocity squared. */
   double quadratic_at(double J, double density) const
   {
     if (diameter == 0.0) return quadratic;
@@ -91,7 +91,8 @@ struct MPMPoreSoil {
     return retention.most * n / water.bulk +
         (grains > 0.0 ? std::max(0.0, biot - n) / grains : 0.0);
   }
-  /** The same for n points at once, per unit of their initial volume, that is, times J; without divisions. */
+  /** The same for n points at once, per unit of their initial volume, that is, times J; without
+   *  divisions. */
   void storage_at(int n, const double *J, const MPMPoreWater &water, double *storage) const
   {
     const double of_water = retention.most / water.bulk,
@@ -103,15 +104,16 @@ struct MPMPoreSoil {
     }
   }
 
-  /** Change of the pressure when the ratio of volumes has changed from since to J and no water left. */
+  /** Change of the pressure when the ratio of volumes has changed from since to J and no water
+   *  left. */
   double undrained(double since, double J, const MPMPoreWater &water) const
   {
     return biot * (since / J - 1.0) / storage_at(J, water);
   }
 };
 
-/** Ratio of the flow w to the gradient i of the pressure that drives it, where i = w/mobility + quadratic
- *  w^2. */
+/** Ratio of the flow w to the gradient i of the pressure that drives it, where i = w/mobility +
+ *  quadratic w^2. */
 inline double secant_mobility(double mobility, double quadratic, double gradient)
 {
   return 2.0 * mobility / (1.0 + std::sqrt(1.0 + 4.0 * quadratic * mobility * mobility * gradient));
@@ -124,11 +126,12 @@ struct MPMPoreResistance {
 
   /** Resistance in direction k to a flow of this magnitude. */
   double at(int k, double flow) const { return linear[k] + quadratic[k] * flow; }
-  /** Magnitude of the flow for which |flow_k| = push_k/(free + at(k, flow)) in both directions k. */
+  /** Magnitude of the flow for which |flow_k| = push_k/(free + at(k, flow)) in both directions
+   *  k. */
   double flow(const double *push, double free) const
   {
-    // the flow in one direction alone is less. The right-hand side is convex in the flow: from below, Newton's
-    // method never goes beyond the solution
+    // the flow in one direction alone is less. The right-hand side is convex in the flow: from
+    // below, Newton's method never goes beyond the solution
     double w = 0.0;
     for (int k = 0; k < 2; k++) {
       const double first = free + linear[k];

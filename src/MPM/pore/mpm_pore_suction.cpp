@@ -15,40 +15,42 @@
 
    so that the storage is n (dS/dp + S/K) as far as p is small beside K. Grains are rigid.
 
-   Flow brings water to a point: its volume W is a state of the point, and each increase of W also goes to the
-   mass of the point. The pressure follows from w = W/(volume of pores), the mixed form
-   (M.A. Celia, E.T. Bouloutas, R.L. Zarba, Water Resour. Res. 26 (1990) 1483). A step is linear in p, with
-   the capacity at its start. Where the capacity changes by orders of magnitude, at fronts and the water table,
-   this makes no error in the mass of water, but one in the time at which it comes. The
-   volume of pores is that after the motion of the step, so that a closed body of any motion keeps both W and
-   the relation of p and W. Only where pores are full before and after the step, p is taken from the step, as in
-   soil that is always full, because 1e-16 of W are 1e-7 Pa of water.
+   Flow brings water to a point: its volume W is a state of the point, and each increase of W also
+   goes to the mass of the point. The pressure follows from w = W/(volume of pores), the mixed form
+   (M.A. Celia, E.T. Bouloutas, R.L. Zarba, Water Resour. Res. 26 (1990) 1483). A step is linear in
+   p, with the capacity at its start. Where the capacity changes by orders of magnitude, at fronts
+   and the water table, this makes no error in the mass of water, but one in the time at which it
+   comes. The volume of pores is that after the motion of the step, so that a closed body of any
+   motion keeps both W and the relation of p and W. Only where pores are full before and after the
+   step, p is taken from the step, as in soil that is always full, because 1e-16 of W are 1e-7 Pa of
+   water.
 
-   Lag. The part of the pressures of points that nodes do not see, p_p - sum_i N_ip p_i, decays at the rate
-   k/(G C h^2) in which flow crosses a cell and, in full pores, in some crossings of waves (mpm_pore.cpp). In dry
-   soil flow takes 1e5 times as long, and at the rate of full pores points would have the pressure of nodes after
-   each step, which would be a numerical diffusion: the share of waves falls as the storage grows. With factors e_p
-   of a step that differ from point to point the sum of C_p e_p (p_p - ...) is not zero, and water would be
-   lost. Hence nodes get the rate C_p (e - e_p) (p_p - ...)/dt, with the greatest factor e: with the weights
-   N_ip, whose sum is one, the total of all points and nodes is kept, and in full pores nothing
-   changes.
+   Lag. The part of the pressures of points that nodes do not see, p_p - sum_i N_ip p_i, decays at
+   the rate k/(G C h^2) in which flow crosses a cell and, in full pores, in some crossings of waves
+   (mpm_pore.cpp). In dry soil flow takes 1e5 times as long, and at the rate of full pores points
+   would have the pressure of nodes after each step, which would be a numerical diffusion: the share
+   of waves falls as the storage grows. With factors e_p of a step that differ from point to point
+   the sum of C_p e_p (p_p - ...) is not zero, and water would be lost. Hence nodes get the rate C_p
+   (e - e_p) (p_p - ...)/dt, with the greatest factor e: with the weights N_ip, whose sum is one,
+   the total of all points and nodes is kept, and in full pores nothing changes.
 
-   Full pores next to very dry soil. The conductance is that at the start of a step, while the capacity of
-   full pores is almost zero: in one step more water would leave them than they have. Hence the flow through a
-   cell in a step is limited to a fifth of the water of a point. Where pores are full on both sides, flow is
-   never so fast, except in steps much too long for the scene.
+   Full pores next to very dry soil. The conductance is that at the start of a step, while the
+   capacity of full pores is almost zero: in one step more water would leave them than they have.
+   Hence the flow through a cell in a step is limited to a fifth of the water of a point. Where
+   pores are full on both sides, flow is never so fast, except in steps much too long for the scene.
 
-   Slopes. Nodes get p_p + g_p (x_i - x_p) with the gradient g_p of the step before (mpm_pore.cpp). At a front
-   that falls by many 1/alpha within a cell, this made pressures far above those of any point at nodes next to
-   it: the front held its own water back, to a third of the inflow into a dry soil at a surface that stays wet, and
-   more so on finer lattices and with stiffer water. Hence the part of g_p that differs from water at rest changes
-   the pressure of points with suction through a cell by 1/alpha + s at most, with the suction s, in which S and
-   k_r change by a factor. As sum_i N_ip (x_i - x_p) = 0, any g_p leaves the water of all points unchanged.
+   Slopes. Nodes get p_p + g_p (x_i - x_p) with the gradient g_p of the step before (mpm_pore.cpp).
+   At a front that falls by many 1/alpha within a cell, this made pressures far above those of any
+   point at nodes next to it: the front held its own water back, to a third of the inflow into a dry
+   soil at a surface that stays wet, and more so on finer lattices and with stiffer water. Hence the
+   part of g_p that differs from water at rest changes the pressure of points with suction through a
+   cell by 1/alpha + s at most, with the suction s, in which S and k_r change by a factor. As sum_i
+   N_ip (x_i - x_p) = 0, any g_p leaves the water of all points unchanged.
 
-   Surface. Through half a cell next to the surface, water comes in with the mean of the permeabilities at the
-   pressure outside and inside: rain on dry soil would otherwise not get in. It leaves with the permeability
-   inside: the water that leaves the nodes at the surface must be able to reach them, or their pressure would fall
-   without bound.
+   Surface. Through half a cell next to the surface, water comes in with the mean of the
+   permeabilities at the pressure outside and inside: rain on dry soil would otherwise not get in.
+   It leaves with the permeability inside: the water that leaves the nodes at the surface must be
+   able to reach them, or their pressure would fall without bound.
 ------------------------------------------------------------------------- */
 
 #include "pore/mpm_pore_suction.h"

@@ -36,37 +36,38 @@ struct MPMPoreMoisture {
 
   /** State at the ratio of volumes J and the pressure p. */
   static MPMPoreMoisture at(const MPMPoreSoil &, double J, double p, const MPMPoreWater &);
-  /** The pressure at which pores have this filling w. before: the last pressure; guess: a value near the
-   *  solution. Soil with less water than at the suction 100/alpha gets that suction, or the suction it had
-   *  before. */
+  /** The pressure at which pores have this filling w. before: the last pressure; guess: a value
+   *  near the solution. Soil with less water than at the suction 100/alpha gets that suction, or
+   *  the suction it had before. */
   static double pressure(const MPMPoreSoil &, double filling, double before, double guess,
                          const MPMPoreWater &);
-  /** Energy stored in a volume of soil: the integral of p times the storage, from zero [pressure]. */
+  /** Energy stored in a volume of soil: the integral of p times the storage, from zero
+   *  [pressure]. */
   static double energy(const MPMPoreSoil &, double J, double p, const MPMPoreWater &);
 };
 
-/** Partly saturated soil in one field: the water of points besides its pressure, and the changes that this
- *  makes in the sums over points. See mpm_pore_suction.cpp. */
+/** Partly saturated soil in one field: the water of points besides its pressure, and the changes
+ *  that this makes in the sums over points. See mpm_pore_suction.cpp. */
 class MPMPoreSuction : protected Pointers {
  public:
   /** content: [n] volume of water of each point, negative where it is not yet known. */
   MPMPoreSuction(class LAMMPS *, MPMField &, const MPMPoreWater &, double *const &content);
 
-  /** If the water of a point is not yet known, sets it from the pressure, and subtracts the mass of the water
-   *  that its pores lack. */
+  /** If the water of a point is not yet known, sets it from the pressure, and subtracts the mass of
+   *  the water that its pores lack. */
   void weigh(int i, const MPMPoreSoil &, double p) const;
 
-  /** Start of a step, or of one more sum over points. usual, waves: rate at which points with full pores take
-   *  the pressure of nodes [1/time], and the part of it that is due to waves. */
+  /** Start of a step, or of one more sum over points. usual, waves: rate at which points with full
+   *  pores take the pressure of nodes [1/time], and the part of it that is due to waves. */
   void begin(int nmax, double usual, double waves);
-  /** Call for all points of soils. Changes the values for full pores into those at the pressure p: capacity,
-   *  conductance, conductance through the surface (it differs from the former where drag has a quadratic
-   *  term), and the pressure in forces. V: volume of the point. */
+  /** Call for all points of soils. Changes the values for full pores into those at the pressure p:
+   *  capacity, conductance, conductance through the surface (it differs from the former where drag
+   *  has a quadratic term), and the pressure in forces. V: volume of the point. */
   void begin_point(int i, const MPMPoreSoil &, double J, double V, double p, double &capacity,
                    double &conductance, double &through, double &in_forces);
   /** Limits the gradient by which the pressure of a point with suction goes to nodes at fronts, see
-   *  mpm_pore_suction.cpp. p, g: pressure and gradient of the point; g is changed in place. at_rest: the
-   *  gradient of water at rest [pressure/length]. */
+   *  mpm_pore_suction.cpp. p, g: pressure and gradient of the point; g is changed in place.
+   *  at_rest: the gradient of water at rest [pressure/length]. */
   static void limit_slope(const MPMPoreSoil &, double p, const double *at_rest,
                           const MPM_NS::Lattice &, double *g);
   /** Sets by how much the pressure of point i is above that of the nodes. */
@@ -76,17 +77,19 @@ class MPMPoreSuction : protected Pointers {
   void find_conductances(MPMNodeScalar &, const MPMPoreSurface &, const Soils &);
   const MPMPoreSurface::Wet &at_surface() const { return wet; }
 
-  /** The motion increases the volume of point i by more. Returns the share of this volume that is water. */
+  /** The motion increases the volume of point i by more. Returns the share of this volume that is
+   *  water. */
   double take_motion(int i, double more, double dt);
   /** Call when the rates at which points take the pressure of nodes are known. Collective. */
   void take_rates(double dt);
-  /** Rate that nodes get in return, so that water is conserved although the rates of points differ. */
+  /** Rate that nodes get in return, so that water is conserved although the rates of points
+   *  differ. */
   double regained(int i, double capacity, double dt) const
   {
     return capacity * (longest - of[i].keep) * of[i].lag / dt;
   }
-  /** Limits the flow of a point to a share of its water per crossing of a cell in a step. flow: volume times
-   *  velocity of the point; speed: one cell per step. */
+  /** Limits the flow of a point to a share of its water per crossing of a cell in a step. flow:
+   *  volume times velocity of the point; speed: one cell per step. */
   void limit_flow(int i, double speed, double *flow) const
   {
     const double most = MOST_FLOW * of[i].filling * of[i].full * speed;
@@ -97,8 +100,8 @@ class MPMPoreSuction : protected Pointers {
   /** The greatest share of the lag of any point that stays in this step. */
   double kept_share() const { return longest; }
   double kept_lag(int i) const { return of[i].keep * of[i].lag; }
-  /** Point i has received the volume more of water. guess: its pressure if its capacity had not changed.
-   *  Returns its pressure. */
+  /** Point i has received the volume more of water. guess: its pressure if its capacity had not
+   *  changed. Returns its pressure. */
   double take_water(int i, const MPMPoreSoil &, double before, double guess, double more);
 
   double memory_usage() const;

@@ -7,19 +7,22 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Steps between two flows of pore water, in which no water leaves its point (keyword every of fix mpm/pore).
+   Steps between two flows of pore water, in which no water leaves its point (keyword every of fix
+   mpm/pore).
 
-   The motion changes the pressure of a point by dp = - alpha dV/C, with the change dV of its volume since the last flow and its
-   storage C = S V. This needs no nodes, and forces have p + dp. The step with the flow takes dp to nodes with the same weights as
-   each step that does not wait (mpm_pore.cpp), so that nodes see the same part of the motion, and points get the pressure of
-   nodes. The part of dp that nodes cannot see, with which points would lock, is lost before it exceeds the effect of waves in so
-   many steps.
+   The motion changes the pressure of a point by dp = - alpha dV/C, with the change dV of its volume
+   since the last flow and its storage C = S V. This needs no nodes, and forces have p + dp. The
+   step with the flow takes dp to nodes with the same weights as each step that does not wait
+   (mpm_pore.cpp), so that nodes see the same part of the motion, and points get the pressure of
+   nodes. The part of dp that nodes cannot see, with which points would lock, is lost before it
+   exceeds the effect of waves in so many steps.
 
    A flow right after a step with flow is the same as without waits, to the last bit.
 
-   The flow starts with all of dp except that of its own step. If the squeezed volume were spread over the time of the flow, the flow
-   would act in forces half of that time too late, and waves would have a frequency that is too high by a quarter of the share of
-   their pressure that flow takes in that time.
+   The flow starts with all of dp except that of its own step. If the squeezed volume were spread
+   over the time of the flow, the flow would act in forces half of that time too late, and waves
+   would have a frequency that is too high by a quarter of the share of their pressure that flow
+   takes in that time.
 ------------------------------------------------------------------------- */
 
 #include "pore/mpm_pore.h"
@@ -47,8 +50,8 @@ double MPMPore::undrained(int i) const
   return s ? undrained(*s, i, field.points->jacobian(i)) : 0.0;
 }
 
-/** Starts a flow: all changes go into the pressure of points, and into forces. squeezed has the volumes of points, and capacity their
- *  storage. */
+/** Starts a flow: all changes go into the pressure of points, and into forces. squeezed has the
+ *  volumes of points, and capacity their storage. */
 void MPMPore::gather(const Soil &s, int first, int n, const double *J, const MPMRows &state)
 {
   const int width = 1 + field.lattice.dim;
@@ -71,8 +74,9 @@ void MPMPore::gather(const Soil &s, int first, int n, const double *J, const MPM
   std::copy_n(J, n, last);
 }
 
-/** Measures how much points lie in layers. With quadratic functions, velocities of nodes that alternate between 1 and -1 along an axis have
- *  the slope 0 at nodes, and 2 per cell in the middle between them; in between the slope is linear. */
+/** Measures how much points lie in layers. With quadratic functions, velocities of nodes that
+ *  alternate between 1 and -1 along an axis have the slope 0 at nodes, and 2 per cell in the middle
+ *  between them; in between the slope is linear. */
 void MPMPore::look_at_layers(Layers &sum, int first, int n, const double *V) const
 {
   double volume = 0.0;

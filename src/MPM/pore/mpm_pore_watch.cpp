@@ -44,7 +44,8 @@ void MPMPoreWatch::start(bool neglects_inertia)
   measures_inertia = neglects_inertia && !inertia_known;
 }
 
-/** Warns of materials without water that are thinner than the reach of nodes, at the first step, once. */
+/** Warns of materials without water that are thinner than the reach of nodes, at the first step,
+ *  once. */
 void MPMPoreWatch::look_for_leaks()
 {
   if (leaks_known) return;
@@ -68,7 +69,8 @@ void MPMPoreWatch::look_for_leaks()
   }
 }
 
-/** Warns once of pores that are shut, where the equations hold neither for the soil nor for its water. */
+/** Warns once of pores that are shut, where the equations hold neither for the soil nor for its
+ *  water. */
 void MPMPoreWatch::look_for_shut_pores()
 {
   if (shut_known) return;
@@ -94,7 +96,8 @@ void MPMPoreWatch::look_for_shut_pores()
         lowest, worst[0], worst[1]);
 }
 
-/** Warns once of flow through a surface that is not a face of the box, in a lump that one stage cannot take. */
+/** Warns once of flow through a surface that is not a face of the box, in a lump that one stage
+ *  cannot take. */
 void MPMPoreWatch::look_for_long_flow(double duration, double limit, double steps)
 {
   if (long_known || options.every == MPMPoreOptions::AUTO || steps == 0.0 ||
@@ -110,8 +113,8 @@ void MPMPoreWatch::look_for_long_flow(double duration, double limit, double step
                    options.every, steps + 1.0, duration / limit);
 }
 
-/** Warns once of pressures that vary over some cells and that points have lost to nodes in long runs, where the flow itself is too slow
- *  for that. */
+/** Warns once of pressures that vary over some cells and that points have lost to nodes in long
+ *  runs, where the flow itself is too slow for that. */
 void MPMPoreWatch::look_for_smoothing(double duration)
 {
   constexpr double MUCH = 0.02, OF_FLOW = 0.2;
@@ -134,8 +137,8 @@ void MPMPoreWatch::look_for_smoothing(double duration)
                    options.waits() ? "every 1 and a small relax" : "a smaller relax");
 }
 
-/** Measures the neglected acceleration between every fourth flow, see MPMPore::inertia(): relevant motion is slower than waves of the
- *  lattice. */
+/** Measures the neglected acceleration between every fourth flow, see MPMPore::inertia(): relevant
+ *  motion is slower than waves of the lattice. */
 void MPMPoreWatch::watch_inertia()
 {
   constexpr int EACH = 4;
@@ -162,11 +165,11 @@ void MPMPoreWatch::watch_inertia()
 }
 
 /* ----------------------------------------------------------------------
-   does the acceleration matter that u-p neglects? It does if its part in the energy that the flow has dissipated is not
-   small, and not small relative to the energy of the motion. Waves of a load that comes at once satisfy the latter,
-   too, but slow flow then dissipates far more in the end. Ground that nearly rests has small accelerations relative
-   to that of its weight, and runs that end before the motion has come to rest for the first time do not allow a
-   judgment yet. Warns once
+   does the acceleration matter that u-p neglects? It does if its part in the energy that the flow
+   has dissipated is not small, and not small relative to the energy of the motion. Waves of a load
+   that comes at once satisfy the latter, too, but slow flow then dissipates far more in the end.
+   Ground that nearly rests has small accelerations relative to that of its weight, and runs that
+   end before the motion has come to rest for the first time do not allow a judgment yet. Warns once
 ------------------------------------------------------------------------- */
 
 void MPMPoreWatch::look_at_inertia()

@@ -11,8 +11,8 @@
 
 namespace LAMMPS_NS {
 
-/** How much water the pores of a soil keep, and let flow, when its pressure p is below that of the air. With
- *  the effective saturation S_e = (S - S_r)/(S_s - S_r), which is one for p >= 0,
+/** How much water the pores of a soil keep, and let flow, when its pressure p is below that of the
+ *  air. With the effective saturation S_e = (S - S_r)/(S_s - S_r), which is one for p >= 0,
  *
  *    S_e = (1 + (-alpha p)^n)^-m, m = 1 - 1/n   (M.T. van Genuchten, Soil Sci. Soc. Am. J. 44 (1980) 892)
  *    S_e = exp(alpha p)                         (W.R. Gardner, Soil Sci. 85 (1958) 228)
@@ -20,7 +20,7 @@ namespace LAMMPS_NS {
  *  and the permeability is that of full pores times
  *
  *    k_r = S_e^1/2 (1 - (1 - S_e^(1/m))^m)^2    (Y. Mualem, Water Resour. Res. 12 (1976) 513; van Genuchten)
- *    k_r = S_e^e                                */
+ *    k_r = S_e^e */
 struct MPMRetention {
   enum Law { FULL, VAN_GENUCHTEN, GARDNER };
   enum Flow { OF_LAW, MUALEM, POWER };
@@ -45,8 +45,9 @@ struct MPMRetention {
     double bishop;      ///< chi, share of the pressure in the effective stress (Bishop)
   };
   State at(double p) const;
-  /** Derivative of the pressure in the effective stress with respect to the pressure of the water, d(chi
-   *  p)/dp. With full pores it is chi, which is S_s if Bishop's coefficient is the saturation. */
+  /** Derivative of the pressure in the effective stress with respect to the pressure of the water,
+   *  d(chi p)/dp. With full pores it is chi, which is S_s if Bishop's coefficient is the
+   *  saturation. */
   double borne(double p) const
   {
     if (!can_dry()) return 1.0;

@@ -366,8 +366,8 @@ bigint FixMPMRefine::cracked_at_rim(const MPMTwoScale &pair) const
       for (int i = run.first; i < run.last; i++) {
         if (run.material->history[i][column] < CRACKED) continue;
         bool sees = false;
-        MPMStencil(*field).visit(field->grid.blocks[run.slot], i, [&](const auto &node) {
-          sees = sees || (node.weight > 0.0 && (*near)[node.number] > 0.0);
+        MPMStencil(*field).visit(field->grid.blocks[run.slot], i, [&, &rim = *near](auto &node) {
+          sees = sees || (node.weight > 0.0 && rim[node.number] > 0.0);
         });
         mine += sees;
       }

@@ -17,8 +17,8 @@ namespace MPM_NS {
 constexpr int FACTOR_BLOCK = 16;
 
 /** Products of dense blocks, compiled for each instruction set. a and b consist of n columns of
- *  FACTOR_BLOCK reals, one column after the other; blocks side by side in a row of blocks form one such
- *  list. */
+ *  FACTOR_BLOCK reals, one column after the other; blocks side by side in a row of blocks form one
+ *  such list. */
 struct BlockKernels {
   /** S -= a b^T, with FACTOR_BLOCK columns in S. */
   void (*subtract)(double *S, const double *a, const double *b, int64_t n);

@@ -24,7 +24,8 @@ void BlockRows::assemble(LatticeRanks &ranks_in, int width_in, const std::vector
     return row >= from && row < to;
   };
 
-  // all ranks get what is not of one of them alone, and have it in the same order, so that both triangles have the same sums
+  // all ranks get what is not of one of them alone, and have it in the same order, so that both
+  // triangles have the same sums
 
   std::vector<MatrixBlock> given, shared;
   if (ranks->number() > 1) {

@@ -48,14 +48,14 @@ struct CoarseParts {
   }
 };
 
-/** A symmetric matrix of blocks [width][width]. Each rank has a range of rows, in order of ranks. Vectors
- *  are complete on all ranks. */
+/** A symmetric matrix of blocks [width][width]. Each rank has a range of rows, in order of ranks.
+ *  Vectors are complete on all ranks. */
 class BlockRows {
  public:
   using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
-  /** Builds the matrix. first: [ranks + 1], the first row of each rank. lower: blocks of one triangle, row
-   *  >= column; the blocks of all ranks are added. Collective. */
+  /** Builds the matrix. first: [ranks + 1], the first row of each rank. lower: blocks of one
+   *  triangle, row >= column; the blocks of all ranks are added. Collective. */
   void assemble(LatticeRanks &, int width, const std::vector<int> &first,
                 const std::vector<MatrixBlock> &lower);
 
@@ -76,8 +76,9 @@ class BlockRows {
   /** Gathers rows of all ranks, [rows][n], from the rows of each rank, mine [rows of this rank][n].
    *  Collective. */
   std::vector<double> of_all(const std::vector<double> &mine, int n) const;
-  /** Contribution of the rows of this rank to P^T A P, as blocks of one triangle, where P gives the parts
-   *  of each function in functions of the next level. next: number of functions of that level. */
+  /** Contribution of the rows of this rank to P^T A P, as blocks of one triangle, where P gives the
+   *  parts of each function in functions of the next level. next: number of functions of that
+   *  level. */
   std::vector<MatrixBlock> coarsened(const CoarseParts &, int next) const;
   /** The whole matrix. Collective. */
   Sparse matrix() const;

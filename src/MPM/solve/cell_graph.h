@@ -15,8 +15,8 @@
 
 namespace MPM_NS {
 
-/** Cells and the coefficients between them: the contribution of one rank to (A x)_i = sum_j face_ij (x_i -
- *  x_j) + outside_i x_i. */
+/** Cells and the coefficients between them: the contribution of one rank to (A x)_i = sum_j face_ij
+ *  (x_i - x_j) + outside_i x_i. */
 struct CellGraph {
   std::vector<int> index;        ///< [cell][3] index on the lattice of the level, within the period
   std::vector<int64_t> where;    ///< [cell] its index in vectors
@@ -30,8 +30,8 @@ struct CellGraph {
 
   int size() const { return where.size(); }
   void color();    ///< makes the lists of colors
-  /** Do neighbors always have different colors? For graphs in which the index of a cell in vectors is its
-   *  number. */
+  /** Do neighbors always have different colors? For graphs in which the index of a cell in vectors
+   *  is its number. */
   bool is_proper() const;
 
   /** This rank's part of (A x) at a cell. */

@@ -20,12 +20,14 @@
 
 using namespace MPM_NS;
 
-// cells of a level that is factorized, and sweeps of Gauss-Seidel before and after a coarse correction
+// cells of a level that is factorized, and sweeps of Gauss-Seidel before and after a coarse
+// correction
 static constexpr int FEW = 400;
 static constexpr int SWEEPS = 1;
 // corrections by the next level, from the second level on
 static constexpr int CORRECTIONS = 2;
-// of the coefficients of joined cells: the faces of a level twice as coarse have twice the distance between cells
+// of the coefficients of joined cells: the faces of a level twice as coarse have twice the distance
+// between cells
 static constexpr double COARSER = 0.5;
 
 namespace {
@@ -103,7 +105,8 @@ class Pieces {
   std::vector<int> cell_at;    // [place in vectors]
 };
 
-/** By a < n, then by b: of each a there are a few. Equal ones stay in their order, so that sums of these do not change. */
+/** By a < n, then by b: of each a there are a few. Equal ones stay in their order, so that sums of
+ *  these do not change. */
 void put_in_order(std::vector<Flow> &flows, int n)
 {
   std::vector<int> end(n + 1, 0);
@@ -154,7 +157,8 @@ CellGraph coarse_graph(const std::vector<Piece> &pieces, std::vector<Flow> &flow
   return graph;
 }
 
-/** Sums over the neighbors of cells, color by color, with as many places for each cell: what sweeps do most of the time. */
+/** Sums over the neighbors of cells, color by color, with as many places for each cell: what sweeps
+ *  do most of the time. */
 class ColoredSums {
  public:
   /** Of a graph whose places in vectors are its cells. */
@@ -178,7 +182,8 @@ class ColoredSums {
       }
     }
   }
-  /** put(cell, sum of face times x of its neighbors) for the cells of a color, one after the other. */
+  /** put(cell, sum of face times x of its neighbors) for the cells of a color, one after the
+   *  other. */
   template <class Put> void visit(int color, const double *x, const Put &put) const
   {
     if (width == 4)
@@ -244,22 +249,22 @@ struct CellMultigrid::Levels {
   const CellOperator *fine = nullptr;
 
   // from the finest level, of which this rank has a part, to the first one that all have
-  std::vector<int> piece;       // [cell] the part of this rank of a coarse cell
-  std::vector<int> number;      // [piece] the coarse cell
-  std::vector<int> of_ranks;    // coarse cells of the pieces of all ranks, rank by rank
-  std::vector<double> partial, of_all, node_values;
+  std::vector<int> piece;          // [cell] the part of this rank of a coarse cell
+  std::vector<int> number;         // [piece] the coarse cell
+  std::vector<int> all_numbers;    // coarse cells of the pieces of all ranks, rank by rank
+  std::vector<double> partial, gathered, node_values;
 
   // the same for cells that this rank owns
   std::vector<int> part;           // [place in vectors]
   std::vector<int> part_number;    // [part] the coarse cell
-  std::vector<int> parts_of_ranks, bytes_of_ranks;
+  std::vector<int> part_numbers, part_bytes;
 
   struct Level {
     CellGraph graph;
     ColoredSums sums;
     std::vector<int> next;    // [cell] of the next level
     std::vector<double> x, b, diagonal, to_be;
-    bool proper;    // neighbors have different colors
+    bool proper = false;    // neighbors have different colors
   };
   std::vector<Level> coarse;
   EnvelopeFactors factors;
@@ -294,7 +299,8 @@ void CellMultigrid::setup(const CellOperator &fine)
   on->factorize();
 }
 
-/** Pieces of larger cells are joined where ranks have the same cell in theirs; all ranks get all of them. */
+/** Pieces of larger cells are joined where ranks have the same cell in theirs; all ranks get all of
+ *  them. */
 void CellMultigrid::Levels::first_coarse()
 {
   const auto &graph = fine->cells();
@@ -328,7 +334,7 @@ void CellMultigrid::Levels::first_coarse()
     number[k] = found - joined.begin();
   }
   piece = mine.piece;
-  of_ranks = fine->ranks.gather(number);
+  all_numbers = fine->ranks.gather(number);
   auto flows = fine->ranks.gather(coarse_flows(graph, mine, number));
   coarse.emplace_back();
   coarse[0].graph = coarse_graph(joined, flows);
@@ -351,8 +357,8 @@ void CellMultigrid::Levels::find_parts()
     part[graph.where[cell]] = which;
   }
   const std::vector<int> bytes(1, (int) (part_number.size() * sizeof(double)));
-  bytes_of_ranks = fine->ranks.gather(bytes);
-  parts_of_ranks = fine->ranks.gather(part_number);
+  part_bytes = fine->ranks.gather(bytes);
+  part_numbers = fine->ranks.gather(part_number);
 }
 
 void CellMultigrid::Levels::more_levels()
@@ -446,9 +452,9 @@ void CellMultigrid::Levels::means(const Number &value, std::vector<double> &mean
     const int which = pool[number[piece[cell]]];
     if (which >= 0 && fine->grid.owns(graph.where[cell])) mine[which] += value(graph.where[cell]);
   }
-  fine->ranks.gather(mine, of_all);
+  fine->ranks.gather(mine, gathered);
   mean.assign(npools, 0.0);
-  for (std::size_t k = 0; k < of_all.size(); k++) mean[k % npools] += of_all[k];
+  for (std::size_t k = 0; k < gathered.size(); k++) mean[k % npools] += gathered[k];
   for (std::size_t k = 0; k < npools; k++) mean[k] /= cells_of_pool[k];
 }
 
@@ -476,7 +482,8 @@ double CellMultigrid::project(double *x)
   return largest;
 }
 
-/** A sweep over both colors.  With values of all ranks at both sides of faces, all cells of a color change at once. */
+/** A sweep over both colors. With values of all ranks at both sides of faces, all cells of a color
+ *  change at once. */
 void CellMultigrid::Levels::smooth_fine(const double *r, double *z, bool from_zero, bool backwards)
 {
   const auto &graph = fine->cells();
@@ -497,7 +504,8 @@ void CellMultigrid::Levels::smooth_fine(const double *r, double *z, bool from_ze
   }
 }
 
-/** Right side of the first coarse level: each rank has a part of the residuals of its cells, that of r where it owns them. */
+/** Right side of the first coarse level: each rank has a part of the residuals of its cells, that
+ *  of r where it owns them. */
 void CellMultigrid::Levels::restrict_fine(const double *r, const double *z)
 {
   const auto &graph = fine->cells();
@@ -506,10 +514,10 @@ void CellMultigrid::Levels::restrict_fine(const double *r, const double *z)
     const int64_t place = graph.where[cell];
     partial[piece[cell]] += (fine->grid.owns(place) ? r[place] : 0.0) - graph.flow(cell, z);
   }
-  fine->ranks.gather(partial, of_all);
+  fine->ranks.gather(partial, gathered);
   auto &b = coarse[0].b;
   std::fill(b.begin(), b.end(), 0.0);
-  for (std::size_t k = 0; k < of_all.size(); k++) b[of_ranks[k]] += of_all[k];
+  for (std::size_t k = 0; k < gathered.size(); k++) b[all_numbers[k]] += gathered[k];
 }
 
 /** x of a coarse level from its b. */
@@ -525,8 +533,8 @@ void CellMultigrid::Levels::cycle(std::size_t which)
     return;
   }
 
-  // a color whose neighbors have changed has no residual after its sweep, if no two of its cells are neighbors: another sweep
-  // of it changes nothing, and what it was before does not matter
+  // a color whose neighbors have changed has no residual after its sweep, if no two of its cells
+  // are neighbors: another sweep of it changes nothing, and what it was before does not matter
 
   double *const x = level.x.data();
   const double *const b = level.b.data(), *const diagonal = level.diagonal.data(),
@@ -578,13 +586,13 @@ int CellMultigrid::part_of(int64_t place) const
 
 void CellMultigrid::correct(std::vector<double> &parts)
 {
-  const auto &bytes = on->fine->ranks.gather_sizes(parts.data(), on->bytes_of_ranks);
-  on->of_all.resize(on->parts_of_ranks.size());
-  if (!bytes.empty()) std::memcpy(on->of_all.data(), bytes.data(), bytes.size());
+  const auto &bytes = on->fine->ranks.gather_sizes(parts.data(), on->part_bytes);
+  on->gathered.resize(on->part_numbers.size());
+  if (!bytes.empty()) std::memcpy(on->gathered.data(), bytes.data(), bytes.size());
   auto &first = on->coarse[0];
   std::fill(first.b.begin(), first.b.end(), 0.0);
-  for (std::size_t k = 0; k < on->of_all.size(); k++)
-    first.b[on->parts_of_ranks[k]] += on->of_all[k];
+  for (std::size_t k = 0; k < on->gathered.size(); k++)
+    first.b[on->part_numbers[k]] += on->gathered[k];
   on->cycle(0);
   for (std::size_t k = 0; k < parts.size(); k++) parts[k] = first.x[on->part_number[k]];
 }
@@ -619,11 +627,11 @@ int CellMultigrid::levels() const
 
 double CellMultigrid::memory_usage() const
 {
-  double bytes = (on->piece.capacity() + on->number.capacity() + on->of_ranks.capacity() +
+  double bytes = (on->piece.capacity() + on->number.capacity() + on->all_numbers.capacity() +
                   on->pool.capacity() + on->part.capacity() + on->part_number.capacity() +
-                  on->parts_of_ranks.capacity()) *
+                  on->part_numbers.capacity()) *
           sizeof(int) +
-      (on->partial.capacity() + on->of_all.capacity() + on->node_values.capacity() +
+      (on->partial.capacity() + on->gathered.capacity() + on->node_values.capacity() +
        on->cells_of_pool.capacity()) *
           sizeof(double) +
       on->factors.memory_usage();

@@ -19,20 +19,21 @@ namespace MPM_NS {
  *
  *      (A p)_i = sum over faces to cells j of face_ij (p_i - p_j) + outside_i p_i.
  *
- *  There is one unknown for each node of a Grid; node i of an axis may stand for the cell between nodes i
- *  and i + 1. A face coefficient is, for example, the open share of the face times its area over density
- *  and spacing; it is 0 at walls. outside is the sum of the coefficients of faces to places of known
- *  pressure (a free surface, with the distance to it instead of the spacing); the known pressure itself
- *  goes to the right side.
+ *  There is one unknown for each node of a Grid; node i of an axis may stand for the cell between
+ *  nodes i and i + 1. A face coefficient is, for example, the open share of the face times its area
+ *  over density and spacing; it is 0 at walls. outside is the sum of the coefficients of faces to
+ *  places of known pressure (a free surface, with the distance to it instead of the spacing); the
+ *  known pressure itself goes to the right side.
  *
- *  The coefficients of a rank are contributions to a sum over ranks and periodic images, like sums over
- *  points. If several ranks or images know a face, either one of them gives its coefficient, or all give
- *  the same value and share() is called. Coefficients are set at nodes that a rank shares with others if
- *  these ranks have the nodes, too (Grid::Block::reached), and not at other nodes in its blocks.
+ *  The coefficients of a rank are contributions to a sum over ranks and periodic images, like sums
+ *  over points. If several ranks or images know a face, either one of them gives its coefficient,
+ *  or all give the same value and share() is called. Coefficients are set at nodes that a rank
+ *  shares with others if these ranks have the nodes, too (Grid::Block::reached), and not at other
+ *  nodes in its blocks.
  *
- *  A cell without any coefficient is not in the system: all vectors are 0 there. Cells that faces connect
- *  and that have no outside coefficients form a closed pool, in which pressures are determined up to a
- *  constant (CellMultigrid::project()). */
+ *  A cell without any coefficient is not in the system: all vectors are 0 there. Cells that faces
+ *  connect and that have no outside coefficients form a closed pool, in which pressures are
+ *  determined up to a constant (CellMultigrid::project()). */
 class CellOperator {
  public:
   const Grid &grid;
@@ -43,8 +44,8 @@ class CellOperator {
   CellOperator(const Grid &grid, LatticeRanks &ranks) : grid(grid), ranks(ranks) {}
 
   void clear();    ///< clears the coefficients, for the present blocks of the grid
-  /** For coefficients that are the same on all ranks and images that have them: divides each by their
-   *  number, so that the sum is right. Collective. */
+  /** For coefficients that are the same on all ranks and images that have them: divides each by
+   *  their number, so that the sum is right. Collective. */
   void share();
   void finish();    ///< call when coefficients are complete. Collective
 

@@ -9,9 +9,9 @@
 #ifndef MPM_SOLVE_CHEBYSHEV_H
 #define MPM_SOLVE_CHEBYSHEV_H
 
-// Chebyshev polynomials as smoothers of multigrid (M. Adams, M. Brezina, J. Hu, R. Tuminaro, J. Comput.
-// Phys. 188 (2003) 593). They need only products, so that they are the same for any order of unknowns and
-// any number of ranks.
+// Chebyshev polynomials as smoothers of multigrid (M. Adams, M. Brezina, J. Hu, R. Tuminaro, J.
+// Comput. Phys. 188 (2003) 593). They need only products, so that they are the same for any order
+// of unknowns and any number of ranks.
 
 #include <Eigen/Eigenvalues>
 
@@ -23,13 +23,14 @@
 namespace MPM_NS {
 
 /** Degree of the polynomial, and number of products for the estimate of the largest eigenvalue. The
- *  polynomial acts on the upper part of the spectrum, from CHEBYSHEV_PART times the largest eigenvalue on. */
+ *  polynomial acts on the upper part of the spectrum, from CHEBYSHEV_PART times the largest
+ *  eigenvalue on. */
 constexpr int CHEBYSHEV_DEGREE = 2, LANCZOS_PRODUCTS = 10;
 constexpr double CHEBYSHEV_PART = 0.15;
 
-/** z += p(B A) B (r - A z) with a Chebyshev polynomial p for the upper part of the spectrum, which ends at
- *  largest. apply(z, y): y = A z. precondition(r, y): y = B r. from_zero: z is 0 at the start. work: three
- *  vectors. */
+/** z += p(B A) B (r - A z) with a Chebyshev polynomial p for the upper part of the spectrum, which
+ *  ends at largest. apply(z, y): y = A z. precondition(r, y): y = B r. from_zero: z is 0 at the
+ *  start. work: three vectors. */
 template <class Apply, class Precondition>
 void chebyshev(int64_t n, double largest, const double *r, double *z, bool from_zero,
                std::vector<double> *work, const Apply &apply, const Precondition &precondition)
@@ -60,8 +61,8 @@ void chebyshev(int64_t n, double largest, const double *r, double *z, bool from_
   }
 }
 
-/** Estimates the largest eigenvalue of B A, increased by 10 percent, with the Lanczos method in the form of
- *  conjugate gradients for the right side A B p. product(a, b): a . b. */
+/** Estimates the largest eigenvalue of B A, increased by 10 percent, with the Lanczos method in the
+ *  form of conjugate gradients for the right side A B p. product(a, b): a . b. */
 template <class Apply, class Precondition, class Product>
 double largest_eigenvalue_of(int64_t n, std::vector<double> p, const Apply &apply,
                              const Precondition &precondition, const Product &product)

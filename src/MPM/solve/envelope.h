@@ -16,11 +16,11 @@
 
 namespace MPM_NS {
 
-/** One triangle of a symmetric matrix in dense blocks, with each row of blocks stored from its first entry
- *  to the diagonal, and its Cholesky factors A = L L^T, which replace it.
+/** One triangle of a symmetric matrix in dense blocks, with each row of blocks stored from its
+ *  first entry to the diagonal, and its Cholesky factors A = L L^T, which replace it.
  *
- *  The last rows may be left without factors. Then A22 is replaced by A22 - A21 A11^-1 A12 (I. Schur),
- *  which represents the effect of all preceding unknowns. */
+ *  The last rows may be left without factors. Then A22 is replaced by A22 - A21 A11^-1 A12 (I.
+ *  Schur), which represents the effect of all preceding unknowns. */
 class Envelope {
  public:
   Envelope() : kernels(BlockKernels::select()) {}
@@ -38,21 +38,24 @@ class Envelope {
   int64_t size() const { return begin.empty() ? 0 : begin.back(); }
   /** An entry that has been noted by reach(). */
   double &at(int row, int column);
-  /** Replaces the matrix by its factors. Returns false if it is not positive definite or not finite. */
+  /** Replaces the matrix by its factors. Returns false if it is not positive definite or not
+   *  finite. */
   bool factorize();
-  /** Rounds the factors to single precision, in half of the memory. The rounded factors represent a positive
-   *  definite matrix as well. From now on only solve_forward() and solve_backward() may be called, or
-   *  clear(). */
+  /** Rounds the factors to single precision, in half of the memory. The rounded factors represent a
+   *  positive definite matrix as well. From now on only solve_forward() and solve_backward() may be
+   *  called, or clear(). */
   void round();
 
-  /** Copies the blocks of the rows without factors, [row][column up to the row], one after the other. */
+  /** Copies the blocks of the rows without factors, [row][column up to the row], one after the
+   *  other. */
   void give_rest(std::vector<double> &blocks) const;
   /** Adds a list of blocks from give_rest(), which must have as many reals as this matrix. */
   void add(const double *blocks);
 
   /** y1 <- L^-1 y1 for the rows with factors, and y2 <- y2 - L21 y1 for the others. */
   void solve_forward(double *y) const;
-  /** y1 <- L^-T (y1 - L21^T y2) for the rows with factors, where y2 belongs to the rows without factors. */
+  /** y1 <- L^-T (y1 - L21^T y2) for the rows with factors, where y2 belongs to the rows without
+   *  factors. */
   void solve_backward(double *y) const;
   double memory_usage() const;
 

@@ -21,7 +21,8 @@ static int padded(int n)
 }
 
 /* ----------------------------------------------------------------------
-   Unknowns in layers: those that are as many entries away from the first one. That is one that is far from another one
+   Unknowns in layers: those that are as many entries away from the first one. That is one that is
+   far from another one
 ------------------------------------------------------------------------- */
 
 void EnvelopeFactors::put_in_layers(const Sparse &A)
@@ -30,7 +31,8 @@ void EnvelopeFactors::put_in_layers(const Sparse &A)
   queue.clear();
   queue.reserve(n);
   layer.assign(n, -1);
-  // from a given one: the queue has all that are joined to it, in layers, behind those that it has already
+  // from a given one: the queue has all that are joined to it, in layers, behind those that it has
+  // already
   const auto visit = [&](int seed) {
     std::size_t next = queue.size();
     queue.push_back(seed);
@@ -67,7 +69,8 @@ void EnvelopeFactors::put_in_order()
   part[0] = part[1] = part[2] = padded(n);
 }
 
-/** Halves on both sides of the layer that has this one of the queue. Each is put in layers again, from the middle on, and backwards. */
+/** Halves on both sides of the layer that has this one of the queue. Each is put in layers again,
+ *  from the middle on, and backwards. */
 void EnvelopeFactors::cut(const Sparse &A, int at)
 {
   const int n = unknowns;
@@ -182,13 +185,13 @@ bool EnvelopeFactors::compute_again(const Sparse &A)
   return good;
 }
 
-/** What all ranks have sent, in their order. */
+/** What all ranks have own_part, in their order. */
 void EnvelopeFactors::gather()
 {
   if (ranks)
-    ranks->gather(sent, of_ranks);
+    ranks->gather(own_part, gathered);
   else
-    of_ranks = sent;
+    gathered = own_part;
 }
 
 bool EnvelopeFactors::factorize()
@@ -197,14 +200,14 @@ bool EnvelopeFactors::factorize()
   for (int which = 0; which < 2; which++)
     if (is_mine(which) && !half[which].factorize()) good = false;
   if (!has_halves()) return good;
-  sent.clear();
+  own_part.clear();
   for (int which = 0; which < 2; which++) {
     if (!is_mine(which)) continue;
-    sent.push_back(good);
-    half[which].give_rest(sent);
+    own_part.push_back(good);
+    half[which].give_rest(own_part);
   }
   gather();
-  const double *of = of_ranks.data();
+  const double *of = gathered.data();
   for (int which = 0; which < 2; which++) {
     good = good && *of++ == 1.0;
     middle.add(of);
@@ -228,32 +231,32 @@ void EnvelopeFactors::solve(const double *b, double *x)
   const auto end_of = [this](int which) {
     return part[which] - begin_of(which);
   };
-  sent.clear();
+  own_part.clear();
   for (int which = 0; which < 2; which++) {
     if (!is_mine(which)) continue;
     auto &own = of_half[which];
     own.assign(y + begin_of(which), y + part[which]);
     own.resize(end_of(which) + between, 0.0);
     half[which].solve_forward(own.data());
-    sent.insert(sent.end(), own.begin() + end_of(which), own.end());
+    own_part.insert(own_part.end(), own.begin() + end_of(which), own.end());
   }
   gather();
   double *const inner = y + part[1];
   for (int which = 0; which < 2; which++)
-    for (int k = 0; k < between; k++) inner[k] += of_ranks[(std::size_t) between * which + k];
+    for (int k = 0; k < between; k++) inner[k] += gathered[(std::size_t) between * which + k];
   middle.solve_forward(inner);
   middle.solve_backward(inner);
-  sent.clear();
+  own_part.clear();
   for (int which = 0; which < 2; which++) {
     if (!is_mine(which)) continue;
     auto &own = of_half[which];
     std::copy_n(inner, between, own.begin() + end_of(which));
     half[which].solve_backward(own.data());
-    sent.insert(sent.end(), own.begin(), own.begin() + end_of(which));
+    own_part.insert(own_part.end(), own.begin(), own.begin() + end_of(which));
   }
   gather();
   for (int k = 0; k < unknowns; k++)
-    x[k] = number[k] < part[1] ? of_ranks[number[k]] : y[number[k]];
+    x[k] = number[k] < part[1] ? gathered[number[k]] : y[number[k]];
 }
 
 double EnvelopeFactors::memory_usage() const
@@ -261,7 +264,7 @@ double EnvelopeFactors::memory_usage() const
   double bytes = half[0].memory_usage() + half[1].memory_usage() + middle.memory_usage();
   for (const auto *list : {&number, &queue, &layer, &unused})
     bytes += list->capacity() * sizeof(int);
-  for (const auto *list : {&solution, &sent, &of_ranks, &of_half[0], &of_half[1]})
+  for (const auto *list : {&solution, &own_part, &gathered, &of_half[0], &of_half[1]})
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }

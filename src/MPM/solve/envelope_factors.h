@@ -20,26 +20,27 @@ namespace MPM_NS {
 
 /** Cholesky factors of a sparse symmetric matrix, A = L L^T.
  *
- *  Unknowns are numbered in layers from one end of a body to the other (E. Cuthill, J. McKee, Proc. 24th
- *  ACM Conf. (1969) 157), so that the entries of a row are close to the diagonal, and L is stored in an
- *  envelope. This has more entries than orderings that minimize their number, but products of blocks run at
- *  the full speed of the processor. For systems of some thousand unknowns this is ten times faster.
+ *  Unknowns are numbered in layers from one end of a body to the other (E. Cuthill, J. McKee, Proc.
+ *  24th ACM Conf. (1969) 157), so that the entries of a row are close to the diagonal, and L is
+ *  stored in an envelope. This has more entries than orderings that minimize their number, but
+ *  products of blocks run at the full speed of the processor. For systems of some thousand unknowns
+ *  this is ten times faster.
  *
- *  If the envelope is large, a layer in the middle is put last, and both halves are eliminated toward it,
- *  each from its end. This takes the same number of operations, but two ranks can share them. The order
- *  does not depend on the number of ranks, and neither does the result. */
+ *  If the envelope is large, a layer in the middle is put last, and both halves are eliminated
+ *  toward it, each from its end. This takes the same number of operations, but two ranks can share
+ *  them. The order does not depend on the number of ranks, and neither does the result. */
 class EnvelopeFactors {
  public:
-  /** How factors are kept. Rounded ones take half of the memory, all of which a solution has to read.
-   *  They are those of another matrix, which is positive definite as well: along a vector v its
-   *  v^T A v differs by a part of some 1e-7 times the root of the condition of A, at most. This is for
-   *  preconditioners. Factors are made and used in double precision. */
+  /** How factors are kept. Rounded ones take half of the memory, all of which a solution has to
+   *  read. They are those of another matrix, which is positive definite as well: along a vector v
+   *  its v^T A v differs by a part of some 1e-7 times the root of the condition of A, at most. This
+   *  is for preconditioners. Factors are made and used in double precision. */
   enum Precision { DOUBLE, ROUNDED };
   static constexpr int64_t ENOUGH = 500000;    ///< reals in an envelope that is worth halves
 
-  /** ranks: the first two of them have one half each. All ranks must call each function with the same
-   *  matrix and the same vectors, and get the same results. Null: this rank has both halves. split: number
-   *  of reals in the envelope from which on there are halves. */
+  /** ranks: the first two of them have one half each. All ranks must call each function with the
+   *  same matrix and the same vectors, and get the same results. Null: this rank has both halves.
+   *  split: number of reals in the envelope from which on there are halves. */
   explicit EnvelopeFactors(LatticeRanks *ranks = nullptr, int64_t split = ENOUGH,
                            Precision precision = DOUBLE) :
       ranks(ranks),
@@ -47,10 +48,11 @@ class EnvelopeFactors {
   {
   }
 
-  /** Factorizes a matrix, given with both triangles. Returns false if it is not positive definite or not
-   *  finite; the factors must not be used then. */
+  /** Factorizes a matrix, given with both triangles. Returns false if it is not positive definite
+   *  or not finite; the factors must not be used then. */
   bool compute(const Eigen::SparseMatrix<double> &A);
-  /** The same for a matrix with entries in the same places as in the last matrix, with the known order. */
+  /** The same for a matrix with entries in the same places as in the last matrix, with the known
+   *  order. */
   bool compute_again(const Eigen::SparseMatrix<double> &A);
   /** x = A^-1 b, with b and x [unknowns], which may be the same array. */
   void solve(const double *b, double *x);
@@ -72,7 +74,7 @@ class EnvelopeFactors {
   std::vector<int> unused;          // places without an unknown
   std::vector<double> solution;     // [place]
   std::vector<double> of_half[2];    // solutions of each half, with those of the middle
-  std::vector<double> sent, of_ranks;
+  std::vector<double> own_part, gathered;
 
   bool is_mine(int which) const;
   void put_in_layers(const Sparse &);

@@ -13,7 +13,8 @@
 
 using namespace MPM_NS;
 
-// what is left of a vector after its parts along others, over its length, when it is one of their span but for round-off
+// what is left of a vector after its parts along others, over its length, when it is one of their
+// span but for round-off
 static constexpr double ROUND_OFF = 1.0e-14;
 
 SolveReport FlexibleGMRES::solve(LinearSystem &system, const double *b, double *x,
@@ -33,7 +34,8 @@ SolveReport FlexibleGMRES::solve(LinearSystem &system, const double *b, double *
   bool exhausted = false;    // the space of Krylov was at the end of a cycle
   double before = 0.0;       // residual at its start
   while (true) {
-    // from here on with the true residual, also to see whether that which is known by rotations is it
+    // from here on with the true residual, also to see whether that which is known by rotations is
+    // it
 
     v[0].resize(n);
     auto &r = v[0];
@@ -101,7 +103,8 @@ void FlexibleGMRES::orthogonalize(LinearSystem &system, int j, double &largest)
   double *const row = column(j);
   std::fill_n(row, j + 2, 0.0);
 
-  // classical Gram and Schmidt twice: as good as the modified form once, with two sums over ranks and not j + 1
+  // classical Gram and Schmidt twice: as good as the modified form once, with two sums over ranks
+  // and not j + 1
 
   left.resize(j + 2);
   right.assign(j + 2, next.data());

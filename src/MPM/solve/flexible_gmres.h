@@ -13,13 +13,13 @@
 
 namespace MPM_NS {
 
-/** Flexible generalized minimal residuals (GMRES) with restarts (Y. Saad, SIAM J. Sci. Comput. 14 (1993)
- *  461) for systems that need not be symmetric. The preconditioner acts from the right, so that residuals
- *  are those of the system. It may differ from iteration to iteration, for example be an iterative solve
- *  itself. Two vectors are kept for each iteration of a cycle, after which the method restarts with the
- *  remaining residual. A singular system is solved if its right side is in the range, unless the Krylov
- *  space ends earlier (SINGULAR). x: first guess and solution. The object keeps its vectors from solve to
- *  solve. */
+/** Flexible generalized minimal residuals (GMRES) with restarts (Y. Saad, SIAM J. Sci. Comput. 14
+ *  (1993) 461) for systems that need not be symmetric. The preconditioner acts from the right, so
+ *  that residuals are those of the system. It may differ from iteration to iteration, for example
+ *  be an iterative solve itself. Two vectors are kept for each iteration of a cycle, after which
+ *  the method restarts with the remaining residual. A singular system is solved if its right side
+ *  is in the range, unless the Krylov space ends earlier (SINGULAR). x: first guess and solution.
+ *  The object keeps its vectors from solve to solve. */
 class FlexibleGMRES {
  public:
   /** cycle: number of iterations between restarts. */
@@ -36,8 +36,8 @@ class FlexibleGMRES {
   std::vector<double> part;
 
   double *column(int j) { return h.data() + (std::size_t) j * (longest + 2); }
-  /** Finds vector j + 1 of the basis. Its components along the other vectors and its length become column
-   *  j. */
+  /** Finds vector j + 1 of the basis. Its components along the other vectors and its length become
+   *  column j. */
   void orthogonalize(LinearSystem &, int j, double &largest);
   void update(int n, double *x);
 };

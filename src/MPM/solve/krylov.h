@@ -18,8 +18,9 @@
 namespace MPM_NS {
 
 /** Criterion of convergence: |b - A x| <= max(relative |b|, absolute), in the norm of
- *  LinearSystem::products(). With natural, which is for conjugate gradients that start at x = 0, the norm
- *  is that of the preconditioner M, (r . M r)^1/2, which is independent of the units of single unknowns. */
+ *  LinearSystem::products(). With natural, which is for conjugate gradients that start at x = 0,
+ *  the norm is that of the preconditioner M, (r . M r)^1/2, which is independent of the units of
+ *  single unknowns. */
 struct SolveGoal {
   double relative = 1.0e-8;
   double absolute = 0.0;
@@ -54,9 +55,10 @@ struct SolveReport {
   std::string describe() const;
 };
 
-/** Preconditioned conjugate gradients (M.R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409) for symmetric
- *  systems that are positive definite, or semi-definite with a right side that is in their range. x: first guess and
- *  solution. The object keeps its vectors from solve to solve. */
+/** Preconditioned conjugate gradients (M.R. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49
+ *  (1952) 409) for symmetric systems that are positive definite, or semi-definite with a right side
+ *  that is in their range. x: first guess and solution. The object keeps its vectors from solve to
+ *  solve. */
 class ConjugateGradients {
  public:
   SolveReport solve(LinearSystem &, const double *b, double *x, const SolveGoal &);

@@ -16,8 +16,8 @@ namespace MPM_NS {
 
 using LatticeIndex = std::array<int, 3>;
 
-/** One number for the index of a node or cell, each component of which is from -2^20 to 2^20 - 1. Keys have
- *  the same order as indices. */
+/** One number for the index of a node or cell, each component of which is from -2^20 to 2^20 - 1.
+ *  Keys have the same order as indices. */
 inline uint64_t lattice_key(const LatticeIndex &index)
 {
   uint64_t key = 0;

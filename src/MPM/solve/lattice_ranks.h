@@ -25,11 +25,12 @@ class LatticeRanks {
   virtual int number() const { return 1; }
   virtual int me() const { return 0; }    ///< number of this rank, from 0 on
 
-  /** Sums values [node][width] at each node of the Grid over its periodic images and over the ranks that
-   *  have it. Afterward all of them have the same sum, bit by bit. Collective. */
+  /** Sums values [node][width] at each node of the Grid over its periodic images and over the ranks
+   *  that have it. Afterward all of them have the same sum, bit by bit. Collective. */
   virtual void sum(double *values, int width) = 0;
 
-  /** Concatenates the bytes of all ranks, in order of ranks. Valid until the next call. Collective. */
+  /** Concatenates the bytes of all ranks, in order of ranks. Valid until the next call.
+   *  Collective. */
   virtual const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) = 0;
 
   /** The same if the number of bytes of each rank is known on all ranks: sizes [rank]. */

@@ -16,17 +16,18 @@
 
 namespace MPM_NS {
 
-/** Quasi-Newton (BFGS) corrections of the inverse H0 of a matrix that has changed since. They come from
- *  pairs of a motion s and the change of forces -y that it caused. The last MOST pairs are used, in the
- *  compact form of R.H. Byrd, J. Nocedal, R.B. Schnabel, Math. Program. 63 (1994) 129, eq. 2.6:
+/** Quasi-Newton (BFGS) corrections of the inverse H0 of a matrix that has changed since. They come
+ *  from pairs of a motion s and the change of forces -y that it caused. The last MOST pairs are
+ *  used, in the compact form of R.H. Byrd, J. Nocedal, R.B. Schnabel, Math. Program. 63 (1994) 129,
+ *  eq. 2.6:
  *
  *      H = H0 + [S  H0 Y] [ R^-T (D + Y^T H0 Y) R^-1   -R^-T ] [ S^T    ]
  *                         [ -R^-1                         0   ] [ Y^T H0 ]
  *
- *  with the upper triangle R of S^T Y and its diagonal D. The correction needs products of S and Y with the
- *  forces f and with H0 f anyway, and the differences of these from one iteration to the next are the new
- *  entries of R and Y^T H0 Y. So a pair costs little more than its memory. Vectors stand side by side in
- *  blocks, as the kernels of the factors require. */
+ *  with the upper triangle R of S^T Y and its diagonal D. The correction needs products of S and Y
+ *  with the forces f and with H0 f anyway, and the differences of these from one iteration to the
+ *  next are the new entries of R and Y^T H0 Y. So a pair costs little more than its memory. Vectors
+ *  stand side by side in blocks, as the kernels of the factors require. */
 class QuasiNewton {
  public:
   static constexpr int MOST = 2 * FACTOR_BLOCK;    ///< largest number of pairs
@@ -35,14 +36,15 @@ class QuasiNewton {
 
   /** Drops all pairs. Vectors have n entries from now on. */
   void start(std::size_t n);
-  /** The correction d = H f for the remaining forces f, with z = H0 f. A motion since the last correction
-   *  first becomes a pair. */
+  /** The correction d = H f for the remaining forces f, with z = H0 f. A motion since the last
+   *  correction first becomes a pair. */
   void correct(const double *f, const double *z, double *d);
   /** Notes that the motion s was made since correct(). */
   void moved(const double *s) { last_motion.assign(s, s + n); }
   /** Has a motion been noted that is not yet a pair? */
   bool has_moved() const { return !last_motion.empty(); }
-  /** Makes a pair of the noted motion, the remaining forces f, and z = H0 f, without a correction. */
+  /** Makes a pair of the noted motion, the remaining forces f, and z = H0 f, without a
+   *  correction. */
   void settle(const double *f, const double *z);
   int pairs() const { return (int) order.size(); }
   double memory_usage() const;

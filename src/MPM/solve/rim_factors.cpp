@@ -15,7 +15,8 @@
 
 using namespace MPM_NS;
 
-// a chunk is divided where factors of it would take more operations than this, for one value of a node; halves reach so many nodes into each other
+// a chunk is divided where factors of it would take more operations than this, for one value of a
+// node; halves reach so many nodes into each other
 static constexpr double MOST_OPERATIONS = 3.0e7;
 static constexpr int OVERLAP = 2;
 
@@ -26,7 +27,8 @@ static constexpr int INTERFACE_REACH = 2;
 // no place of a node is as far
 static constexpr int FAR = 1 << 30;
 
-/** Calls f(number of the other one) for the nodes that are up to reach away along an axis, itself among them; -1: there is none. */
+/** Calls f(number of the other one) for the nodes that are up to reach away along an axis, itself
+ *  among them; -1: there is none. */
 template <class F>
 static void each_along(const LatticeNodes &all, int node, int d, int reach, const int *period,
                        const F &f)
@@ -42,7 +44,8 @@ static void each_along(const LatticeNodes &all, int node, int d, int reach, cons
 std::vector<char> MPM_NS::rim_of(const LatticeNodes &all, const std::vector<double> &stiffness,
                                  int dim, int reach, const int *period)
 {
-  // along one axis after the other: nodes whose neighbors are all there, and the range of stiffnesses around them
+  // along one axis after the other: nodes whose neighbors are all there, and the range of
+  // stiffnesses around them
 
   const int n = all.index.size();
   std::vector<char> inner(n, 1);
@@ -96,9 +99,19 @@ bool MPM_NS::factorize(Eigen::SparseMatrix<double> A, EnvelopeFactors &factors, 
   return false;
 }
 
+bool MPM_NS::factorize_rows(const Eigen::SparseMatrix<double, Eigen::RowMajor, int> &A,
+                            EnvelopeFactors &factors, bool again)
+{
+  // symmetric: its rows are columns
+  const Eigen::Map<const Eigen::SparseMatrix<double>> columns(
+      A.rows(), A.cols(), A.nonZeros(), A.outerIndexPtr(), A.innerIndexPtr(), A.valuePtr());
+  return factorize(columns, factors, again);
+}
+
 /* ---------------------------------------------------------------------- */
 
-/** Half of a chunk with too many operations, and so on. The envelope of a layer is as many nodes as there are in the layer. */
+/** Half of a chunk with too many operations, and so on. The envelope of a layer is as many nodes as
+ *  there are in the layer. */
 void RimFactors::start(const std::vector<LatticeIndex> &nodes, int dim, int width_in)
 {
   width = width_in;

@@ -17,7 +17,7 @@ void SharedNodes::clear()
 {
   nodes = {};
   place.clear();
-  of_ranks.clear();
+  all_places.clear();
 }
 
 bool SharedNodes::find(const std::vector<LatticeIndex> &mine, std::vector<int> &to) const
@@ -34,7 +34,7 @@ void SharedNodes::take(std::vector<int> &found, std::size_t owned)
 {
   place.swap(found);
   const std::vector<int> mine(place.begin(), place.begin() + owned);
-  of_ranks = ranks.gather(mine);
+  all_places = ranks.gather(mine);
   counts = ranks.gather(std::vector<int>(1, (int) owned));
 }
 
@@ -50,16 +50,16 @@ void SharedNodes::number(const std::vector<LatticeIndex> &mine, std::size_t owne
 
 bool SharedNodes::renumber(const std::vector<LatticeIndex> &mine, std::size_t owned)
 {
-  struct Told {
+  struct Owned {
     int same, owned;
   };
   std::vector<int> found;
   const bool same = find(mine, found);
   bool all_same = true;
   std::size_t count = 0;
-  for (const auto &told : ranks.gather(std::vector<Told>(1, {same, (int) owned}))) {
-    all_same = all_same && told.same;
-    count += told.owned;
+  for (const auto &rank : ranks.gather(std::vector<Owned>(1, {same, (int) owned}))) {
+    all_same = all_same && rank.same;
+    count += rank.owned;
   }
   // each node has one owner: as many as there were, all of which are known, are all of them
   if (!all_same || count != size()) return false;
@@ -67,15 +67,16 @@ bool SharedNodes::renumber(const std::vector<LatticeIndex> &mine, std::size_t ow
   return true;
 }
 
-void SharedNodes::gather(const std::vector<double> &of_owned, int width, std::vector<double> &all)
+void SharedNodes::gather(const std::vector<double> &owned_values, int width,
+                         std::vector<double> &all)
 {
   sizes.resize(counts.size());
   for (std::size_t rank = 0; rank < counts.size(); rank++)
     sizes[rank] = (int) sizeof(double) * counts[rank] * width;
-  const auto &bytes = ranks.gather_sizes(of_owned.data(), sizes);
+  const auto &bytes = ranks.gather_sizes(owned_values.data(), sizes);
   all.resize(size() * width);
   const char *from = bytes.data();
-  for (const int to : of_ranks) {
+  for (const int to : all_places) {
     std::memcpy(&all[(std::size_t) to * width], from, width * sizeof(double));
     from += width * sizeof(double);
   }
@@ -85,5 +86,6 @@ double SharedNodes::memory_usage() const
 {
   constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
   return nodes.index.capacity() * sizeof(LatticeIndex) + nodes.number.size() * HASHED +
-      (place.capacity() + of_ranks.capacity() + counts.capacity() + sizes.capacity()) * sizeof(int);
+      (place.capacity() + all_places.capacity() + counts.capacity() + sizes.capacity()) *
+      sizeof(int);
 }

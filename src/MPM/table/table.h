@@ -34,10 +34,11 @@ struct Table {
   }
 };
 
-/** Reads a file of comma-separated values or XYZ, or a VTK file of points (.vtp, .pvtp) as written by dump mpm/vtk. The
- *  format is found from the first line. columns: names of the columns, separated by commas, for files without names;
- *  empty: the names are in the file, or are type,x,y,z for XYZ. On errors, throws std::runtime_error that begins with the
- *  name of the file. */
+/** Reads a file of comma-separated values or XYZ, or a VTK file of points (.vtp, .pvtp) as written
+ *  by dump mpm/vtk. The format is found from the first line. columns: names of the columns,
+ *  separated by commas, for files without names; empty: the names are in the file, or are
+ *  type,x,y,z for XYZ. On errors, throws std::runtime_error that begins with the name of the
+ *  file. */
 Table read_table(const std::string &file, const std::string &columns);
 
 // readers by format; text: the whole file, name: name of the file for messages

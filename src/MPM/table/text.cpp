@@ -56,8 +56,8 @@ class Lines {
   int64_t number = 0;
 };
 
-/** Words between separators, without blanks and quotes around them; a blank stands for any number of blanks, and a separator
- *  between quotes for itself. */
+/** Words between separators, without blanks and quotes around them; a blank stands for any number
+ *  of blanks, and a separator between quotes for itself. */
 std::vector<std::string> split(const std::string &line, char separator)
 {
   std::vector<std::string> words;
@@ -180,10 +180,12 @@ Table MPM_NS::read_csv(const std::string &text, const std::string &columns, cons
 }
 
 /* ----------------------------------------------------------------------
-   the number of points, a line that may name the columns as extended XYZ does, and a line for each point
+   the number of points, a line that may name the columns as extended XYZ does, and a line for each
+   point
 ------------------------------------------------------------------------- */
 
-/** Properties=species:S:1:pos:R:3:..., in extended XYZ: name, kind, and number of columns of each. */
+/** Properties=species:S:1:pos:R:3:..., in extended XYZ: name, kind, and number of columns of
+ *  each. */
 static std::vector<std::string> xyz_columns(const std::string &line, const Lines &lines)
 {
   const std::string key = "Properties=";

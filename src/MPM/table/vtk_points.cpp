@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// VTK files of points with values of points, as dump mpm/vtk writes them: PolyData in XML with an appended section of bytes, or
-// text.
+// VTK files of points with values of points, as dump mpm/vtk writes them: PolyData in XML with an
+// appended section of bytes, or text.
 
 #include "table/table.h"
 #include "table/vtk_xml.h"

@@ -57,8 +57,8 @@ bool is_blank(char c)
 
 }    // namespace
 
-/** Bytes of an array one after another, as they are or from base64, where what was encoded by itself (as the lengths of compressed blocks are) ends
- *  with a group of four characters. */
+/** Bytes of an array one after another, as they are or from base64, where what was encoded by
+ *  itself (as the lengths of compressed blocks are) ends with a group of four characters. */
 class VtkXml::Bytes {
  public:
   Bytes(const VtkXml &file, std::size_t at, bool in_base64, const std::string &what) :
@@ -281,7 +281,8 @@ std::string VtkXml::read_bytes(Bytes &from, const std::string &what) const
   return compressed ? uncompressed(from, what) : from.take(from.length());
 }
 
-std::string VtkXml::uncompressed(Bytes &from, const std::string &what) const
+std::string VtkXml::uncompressed([[maybe_unused]] Bytes &from,
+                                 [[maybe_unused]] const std::string &what) const
 {
   std::string bytes;
 #ifdef MPM_ZLIB

@@ -17,8 +17,9 @@
 
 namespace MPM_NS {
 
-/** An XML file of VTK with one piece. Its arrays are text, base64, or in an appended section of raw bytes or base64,
- *  with or without zlib compression. All errors are std::runtime_error that begin with the name of the file. */
+/** An XML file of VTK with one piece. Its arrays are text, base64, or in an appended section of raw
+ *  bytes or base64, with or without zlib compression. All errors are std::runtime_error that begin
+ *  with the name of the file. */
 class VtkXml {
  public:
   /** text: the whole file; name: its name. Both must outlive this object. */
@@ -32,17 +33,19 @@ class VtkXml {
     std::size_t begin, end;
     bool is_there() const { return begin != std::string::npos; }
   };
-  /** The next tag between from and until that begins with head, if there is one; see Tag::is_there(). */
+  /** The next tag between from and until that begins with head, if there is one; see
+   *  Tag::is_there(). */
   Tag find_tag(const std::string &head, std::size_t from, std::size_t until) const;
-  /** The next tag after from in the XML part that begins with head; it is an error if there is none. */
+  /** The next tag after from in the XML part that begins with head; it is an error if there is
+   *  none. */
   Tag element(const std::string &head, std::size_t from) const;
   /** Value of an attribute of a tag; empty if there is none. */
   std::string attribute(const Tag &, const std::string &key) const;
   /** End of the XML part. */
   std::size_t end() const;
 
-  /** To be called before arrays are read: checks byte order and compression, and finds the start of appended data.
-   *  Returns the only piece. */
+  /** To be called before arrays are read: checks byte order and compression, and finds the start of
+   *  appended data. Returns the only piece. */
   Tag open();
   /** Number of points, cells, ... of the piece: the value of its attribute key. */
   uint64_t count(const Tag &piece, const std::string &key) const;
@@ -54,8 +57,8 @@ class VtkXml {
     std::vector<double> values;
   };
   static constexpr uint64_t ANY = UINT64_MAX;
-  /** Reads the arrays of a section of the piece, each with the given number of tuples (ANY: as many as there are).
-   *  Returns none if there is no such section. */
+  /** Reads the arrays of a section of the piece, each with the given number of tuples (ANY: as many
+   *  as there are). Returns none if there is no such section. */
   std::vector<Array> section(const std::string &name, uint64_t tuples) const;
 
   /** Throws std::runtime_error with the name of the file and this text. */

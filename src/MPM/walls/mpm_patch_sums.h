@@ -16,9 +16,9 @@
 
 namespace LAMMPS_NS {
 
-/** Weighted sums of two values over patches of a surface. The patch around a place consists of the places of
- *  the same part that are closer than a radius and whose normals point to the same side. All ranks hold the
- *  places of all ranks. */
+/** Weighted sums of two values over patches of a surface. The patch around a place consists of the
+ *  places of the same part that are closer than a radius and whose normals point to the same side.
+ *  All ranks hold the places of all ranks. */
 class MPMPatchSums {
  public:
   struct Place {
@@ -31,8 +31,8 @@ class MPMPatchSums {
 
   /** Collects the places of all ranks; mine: those of this rank. Collective. */
   void gather(const std::vector<Place> &mine);
-  /** Sums over the patch around a place. The weights fall from one at the place to zero at the radius, and
-   *  are multiplied by the cosine between the normals. */
+  /** Sums over the patch around a place. The weights fall from one at the place to zero at the
+   *  radius, and are multiplied by the cosine between the normals. */
   std::array<double, 2> around(double part, const double *at, const double *normal) const;
 
  private:

@@ -12,16 +12,16 @@
 namespace LAMMPS_NS {
 class Region;
 
-/** The inside of a region as a body of density 1. In 2d the volume is an area, and the inertia is that about
- *  the z axis only. */
+/** The inside of a region as a body of density 1. In 2d the volume is an area, and the inertia is
+ *  that about the z axis only. */
 struct MPMRegionBody {
   double volume = 0.0;
   double center[3] = {};
   double inertia[3][3] = {};    ///< about the center
   double lo[3] = {}, hi[3] = {};
 
-  /** Integrates by samples in the box around the region, with an error of some 1e-4; blocks are exact. The
-   *  region must have such a box, see is_bounded(), and be at rest. */
+  /** Integrates by samples in the box around the region, with an error of some 1e-4; blocks are
+   *  exact. The region must have such a box, see is_bounded(), and be at rest. */
   MPMRegionBody(Region &region, int dim);
 
   /** Is there a box around the region with finite edges, as the constructor needs it? */

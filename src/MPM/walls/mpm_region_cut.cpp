@@ -157,7 +157,8 @@ MPMRegionCut::Part MPMRegionCut::try_places(const bigint *s) const
 
 /* ---------------------------------------------------------------------- */
 
-/** Can what is in the cell be light? A center inside is as good as a large part, and costs less to find out. */
+/** Can what is in the cell be light? A center inside is as good as a large part, and costs less to
+ *  find out. */
 bool MPMRegionCut::may_be_light(const bigint *s) const
 {
   return volumes || !match(whole(s).x);

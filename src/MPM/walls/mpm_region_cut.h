@@ -28,12 +28,13 @@ namespace LAMMPS_NS {
 
 /** Cells of sites at origin + (s + 1/2) spacing, and the part of each cell that lies in a region.
  *
- *  The part is exact for a region mpm/mesh in 3d at rest whose parts do not overlap (mesh/cell_volumes.h).
- *  For others, the region is only asked whether a place is inside. A cell whose corners and center are all inside
- *  counts as wholly inside, and a cell with none of them inside as outside. In any other cell, places are
- *  tried on a lattice of rank one (the additive recurrence of the generalized golden ratio), which is
- *  displaced by a function of the site. The error of one cell is therefore about 0.01 of its volume, and the
- *  errors of many cells cancel, wherever faces are. */
+ *  The part is exact for a region mpm/mesh in 3d at rest whose parts do not overlap
+ *  (mesh/cell_volumes.h). For others, the region is only asked whether a place is inside. A cell
+ *  whose corners and center are all inside counts as wholly inside, and a cell with none of them
+ *  inside as outside. In any other cell, places are tried on a lattice of rank one (the additive
+ *  recurrence of the generalized golden ratio), which is displaced by a function of the site. The
+ *  error of one cell is therefore about 0.01 of its volume, and the errors of many cells cancel,
+ *  wherever faces are. */
 class MPMRegionCut : protected Pointers {
  public:
   struct Part {
@@ -53,10 +54,10 @@ class MPMRegionCut : protected Pointers {
   /** The part of the cell that is inside the region. */
   Part inside(const bigint *s);
 
-  /** The part that the point of a cell gets: the part of its own cell, and light parts of neighbors. A light
-   *  part goes to the largest part that is not light and belongs to the sites: across a face, else across an
-   *  edge, else across a corner. Total volume and center do not change. A light part without such a neighbor
-   *  stays. */
+  /** The part that the point of a cell gets: the part of its own cell, and light parts of
+   *  neighbors. A light part goes to the largest part that is not light and belongs to the sites:
+   *  across a face, else across an edge, else across a corner. Total volume and center do not
+   *  change. A light part without such a neighbor stays. */
   Part point(const bigint *s, const Sites &);
 
  private:

@@ -24,18 +24,19 @@ class MPMRegionSurface {
   /** Has the region, or a part of it, open faces? Then all of space counts as inside. */
   bool is_open() const;
 
-  /** Signed distance of x, negative in the region. Returns far or -far if it is greater, or not known. It is
-   *  not known in a union and outside of an intersection if the nearest surface can be an edge between two
-   *  parts. */
+  /** Signed distance of x, negative in the region. Returns far or -far if it is greater, or not
+   *  known. It is not known in a union and outside of an intersection if the nearest surface can be
+   *  an edge between two parts. */
   double distance(const double *x, double far) const { return find(x, far, 0.0); }
 
-  /** Distance for material in front of the surface, where it is needed less exactly. Beyond a node spacing h,
-   *  errors are less than 0.03 h^2/R for a surface of radius R. This is much faster for a mesh. */
+  /** Distance for material in front of the surface, where it is needed less exactly. Beyond a node
+   *  spacing h, errors are less than 0.03 h^2/R for a surface of radius R. This is much faster for
+   *  a mesh. */
   double gap(const double *x, double far, double h) const { return find(x, far, h); }
 
-  /** Unit normal out of the region, the gradient of the distance. If necessary, it is found from differences
-   *  with this step (one-sided where the distance is not known). Zero at centers and where it is not
-   *  known. */
+  /** Unit normal out of the region, the gradient of the distance. If necessary, it is found from
+   *  differences with this step (one-sided where the distance is not known). Zero at centers and
+   *  where it is not known. */
   void normal(const double *x, double far, double step, double *normal) const;
 
   /** The simple region, or intersection, that is nearest to a place outside of unions. */

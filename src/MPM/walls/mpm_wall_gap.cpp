@@ -7,23 +7,24 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The mean distance of the points that a node at the wall sees, with the weights of its function, is
-   known for material that fills the space in front of a plane wall:
+   The mean distance of the points that a node at the wall sees, with the weights of its function,
+   is known for material that fills the space in front of a plane wall:
 
      d_0 = int_0^inf x M(x) dx / int_0^inf M(x) dx     (0.406 h, quadratic, node in the wall)
 
-   and greater when there is a gap, by about 0.6 of its width. Unlike the volume that fills the cell of
-   a node, it is the same at the end of a block as in its middle, and it gets small for a single grain
-   that arrives at the wall, too. Points at the centers of cells of size s stand for the integrals as the
-   midpoint rule does, whose error at the wall is (Euler and Maclaurin)
+   and greater when there is a gap, by about 0.6 of its width. Unlike the volume that fills the cell
+   of a node, it is the same at the end of a block as in its middle, and it gets small for a single
+   grain that arrives at the wall, too. Points at the centers of cells of size s stand for the
+   integrals as the midpoint rule does, whose error at the wall is (Euler and Maclaurin)
 
      sum_p s f(x_p) - int_0^inf f dx = s^2/24 f'(0) + O(s^4)
 
    which is .016 h for two points per cell, and .06 h for one, and taken into account. Points with a
    size (GIMP, CPDI) integrate M exactly, but x is that of their center: - s^2/12 M' in place of it.
 
-   The mean alone would let points of a surface that is curved, or a few grains in front of many, cross
-   the wall. Those that are about to cross it count as deep inside of it: what they belong to touches.
+   The mean alone would let points of a surface that is curved, or a few grains in front of many,
+   cross the wall. Those that are about to cross it count as deep inside of it: what they belong to
+   touches.
 ------------------------------------------------------------------------- */
 
 #include "walls/mpm_wall_gap.h"
@@ -49,15 +50,15 @@ static constexpr double FARTHEST = 4.0;          // more than a node at the wall
 
 static constexpr double TOLERANCE = 0.01;
 
-// points nearer to the wall than this part of their spacing (undeformed: 0.5) are about to cross it: they
-// count as this many cells behind it when they are right at it, and more beyond
+// points nearer to the wall than this part of their spacing (undeformed: 0.5) are about to cross
+// it: they count as this many cells behind it when they are right at it, and more beyond
 
 static constexpr double NEAR = 0.25, BEHIND = 100.0;
 
 /* ---------------------------------------------------------------------- */
 
-MPMWallContact::MPMWallContact(const MPMField &field, const double *positions,
-                               const double *weights, int n) :
+MPMContactDistance::MPMContactDistance(const MPMField &field, const double *positions,
+                                       const double *weights, int n) :
     sized(field.options.has_size())
 {
   const MPMStencil stencil(field);
@@ -84,7 +85,7 @@ MPMWallContact::MPMWallContact(const MPMField &field, const double *positions,
   slope = (M(step) - M(0.0)) / step;
 }
 
-double MPMWallContact::distance(double size2) const
+double MPMContactDistance::distance(double size2) const
 {
   if (volume <= 0.0) return 0.0;
   const double all = volume + (sized ? 0.0 : size2 / 24.0 * slope);
@@ -100,13 +101,13 @@ void MPMWallGap::Sums::add(double weight, const Sums &other)
   size2 += weight * other.size2;
 }
 
-bool MPMWallGap::Sums::touches(const MPMWallContact &full, double near) const
+bool MPMWallGap::Sums::touches(const MPMContactDistance &full, double near) const
 {
   return volume > 0.0 &&
       distance <= (full.distance(size2 / volume) + std::max(near, TOLERANCE)) * volume;
 }
 
-double MPMWallGap::Sums::beyond(const MPMWallContact &full) const
+double MPMWallGap::Sums::beyond(const MPMContactDistance &full) const
 {
   if (!(volume > 0.0)) return std::numeric_limits<double>::infinity();
   return distance / volume - full.distance(size2 / volume);
@@ -123,9 +124,9 @@ double MPMWallGap::farthest(const MPMField &field, double more)
 }
 
 /* ----------------------------------------------------------------------
-   Points that no node at the wall sees are left out, most of them by the distance of the middle of their
-   block: the distance of another place is less by no more than their distance from each other. The domains
-   of points with a size can reach far.
+   Points that no node at the wall sees are left out, most of them by the distance of the middle of
+   their block: the distance of another place is less by no more than their distance from each
+   other. The domains of points with a size can reach far.
 ------------------------------------------------------------------------- */
 
 void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth, double reach,

@@ -18,17 +18,18 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Reference for contact: material that fills the space in front of a plane wall up to its surface, as seen
- *  with a weight function M of the nodes at the wall. x: distance from the wall in node spacings. */
-class MPMWallContact {
+/** Reference for contact: material that fills the space in front of a plane wall up to its surface,
+ *  as seen with a weight function M of the nodes at the wall. x: distance from the wall in node
+ *  spacings. */
+class MPMContactDistance {
  public:
-  MPMWallContact() = default;
-  /** M = sum of weights[k] N_k, where N_k is the function of a node at positions[k] relative to the wall
-   *  (node spacings, positive inside the material). */
-  MPMWallContact(const MPMField &, const double *positions, const double *weights, int n);
+  MPMContactDistance() = default;
+  /** M = sum of weights[k] N_k, where N_k is the function of a node at positions[k] relative to the
+   *  wall (node spacings, positive inside the material). */
+  MPMContactDistance(const MPMField &, const double *positions, const double *weights, int n);
 
-  /** Largest mean distance (weight M, in node spacings) of the points of material that touches the wall.
-   *  size2: mean square of the spacing of the points. */
+  /** Largest mean distance (weight M, in node spacings) of the points of material that touches the
+   *  wall. size2: mean square of the spacing of the points. */
   double distance(double size2) const;
 
  private:
@@ -47,18 +48,19 @@ class MPMWallGap {
 
     /** Adds other sums, times a weight. */
     void add(double weight, const Sums &);
-    /** Does the material touch the wall, or is its distance from it at most near (node spacings)? */
-    bool touches(const MPMWallContact &, double near = 0.0) const;
-    /** Mean distance of the points that are seen, minus that of material that touches the wall (node
-     *  spacings). Not finite if no points are seen. */
-    double beyond(const MPMWallContact &) const;
+    /** Does the material touch the wall, or is its distance from it at most near (node
+     *  spacings)? */
+    bool touches(const MPMContactDistance &, double near = 0.0) const;
+    /** Mean distance of the points that are seen, minus that of material that touches the wall
+     *  (node spacings). Not finite if no points are seen. */
+    double beyond(const MPMContactDistance &) const;
   };
 
-  /** Finds the sums at the nodes of the blocks [slot] that are marked in near (and may find others). away(x):
-   *  distance of a position from the wall, positive on the side of the material. smooth: the distance changes
-   *  by no more than the position. reach: greatest distance that a node of the wall sees (node spacings).
-   *  more: distance beyond the range of nodes at the wall up to which distances are needed (node spacings).
-   *  Collective. */
+  /** Finds the sums at the nodes of the blocks [slot] that are marked in near (and may find
+   *  others). away(x): distance of a position from the wall, positive on the side of the material.
+   *  smooth: the distance changes by no more than the position. reach: greatest distance that a
+   *  node of the wall sees (node spacings). more: distance beyond the range of nodes at the wall up
+   *  to which distances are needed (node spacings). Collective. */
   void map(MPMField &, const std::vector<char> &near, bool smooth, double reach,
            const std::function<double(const double *)> &away, double more = 0.0);
 

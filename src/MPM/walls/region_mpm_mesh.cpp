@@ -202,7 +202,8 @@ int RegMPMMesh::inside(double x, double y, double z)
 
 /* ---------------------------------------------------------------------- */
 
-/** Where x is in the coordinates of the mesh: match() takes it back to where the surface was read. */
+/** Where x is in the coordinates of the mesh: match() takes it back to where the surface was
+ *  read. */
 void RegMPMMesh::find_place(const double *x)
 {
   placing = true;
@@ -265,7 +266,8 @@ bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact,
 }
 
 /* ----------------------------------------------------------------------
-   the closest point of each part of the surface, if x is on the given side and it is within the cutoff
+   the closest point of each part of the surface, if x is on the given side and it is within the
+   cutoff
 ------------------------------------------------------------------------- */
 
 int RegMPMMesh::touch(const double *x, double cutoff, double side)

@@ -52,16 +52,16 @@ class RegMPMMesh : public Region {
   /** Stops with an error if the surface is leaky, because only inside() is known then. */
   void need_distance() const;
 
-  /** Signed distance of x from the present surface of the region, negative in the region; the cutoff or minus
-   *  the cutoff if it is greater. along_z: distance along z of the closest point from x. The result agrees
-   *  with match() and surface(), but takes a fraction of their time if places near each other are asked for
-   *  one after the other. */
+  /** Signed distance of x from the present surface of the region, negative in the region; the
+   *  cutoff or minus the cutoff if it is greater. along_z: distance along z of the closest point
+   *  from x. The result agrees with match() and surface(), but takes a fraction of their time if
+   *  places near each other are asked for one after the other. */
   double distance(const double *x, double cutoff, double &along_z);
 
-  /** As distance() for places nearer to the surface than exact. Farther away, the distance is linear in cells
-   *  of this size, so that a search is needed only once per cell, and not for each place. The value does not
-   *  depend on earlier calls. Returns false if the closest point is along z of x (in 2d, the closest point of
-   *  the section is needed instead). */
+  /** As distance() for places nearer to the surface than exact. Farther away, the distance is
+   *  linear in cells of this size, so that a search is needed only once per cell, and not for each
+   *  place. The value does not depend on earlier calls. Returns false if the closest point is along
+   *  z of x (in 2d, the closest point of the section is needed instead). */
   bool distance_by_cells(const double *x, double cutoff, double exact, double size,
                          double &distance);
 

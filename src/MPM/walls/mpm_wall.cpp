@@ -1,0 +1,255 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "walls/mpm_wall.h"
+
+#include "base/mpm_options.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "field/mpm_field.h"
+#include "math_extra.h"
+#include "modify.h"
+#include "region.h"
+#include "update.h"
+#include "walls/mpm_region_motion.h"
+#include "walls/mpm_wall_gap.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+void MPMWall::init()
+{
+  in_implicit_steps = !modify->get_fix_by_style("^mpm/implicit$").empty();
+  looks_ahead = kind == SEPARATE && in_implicit_steps;
+  Region *const now = region_id.empty() ? nullptr : domain->get_region_by_id(region_id);
+  moves_and_holds = kind != SEPARATE && in_implicit_steps && now && now->dynamic_check();
+}
+
+void MPMWall::init_region()
+{
+  motion_step = -1;
+  placed = false;
+  steps = 0;
+  if (region_id.empty()) return;
+  region = domain->get_region_by_id(region_id);
+  if (!region)
+    error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/boundary does not exist",
+               region_id);
+  surface = std::make_unique<MPMRegionSurface>(region, domain->dimension);
+  if (surface->is_open())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
+  if (region->dynamic_check() && region->nregion > 1)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/boundary cannot use region {}: a union or intersection must not move; "
+               "use one fix mpm/boundary for each member",
+               region_id);
+}
+
+/* ----------------------------------------------------------------------
+   A run may start between two steps of the cycle (keyword every of fix mpm); then the state of a
+   region is that at the last step of the cycle
+------------------------------------------------------------------------- */
+
+void MPMWall::setup()
+{
+  if (!region_moves()) return;
+  evaluate_in_step(lmp, true, [&] {
+    region->prematch();
+  });
+  const auto *field = MPMField::all(lmp)[0];
+  if (!state.acted || field->steps_to_next() == field->options.every)
+    for (int k = 0; k < 4; k++) state.region[k] = *MPMRegionMotion::of(region)[k];
+  placed = true;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MPMWall::acts_on(const MPMField &field) const
+{
+  return field_id.empty() || field_id == field.id();
+}
+
+bool MPMWall::has_several_ranks() const
+{
+  return comm->nprocs > 1;
+}
+
+bool MPMWall::region_moves() const
+{
+  return region && region->dynamic_check();
+}
+
+/* ----------------------------------------------------------------------
+   Nodes inside hold only the points of a body in front of the surface that they reach. The body
+   would creep into the wall, and stresses next to it would be wrong by an amount that depends on
+   where the surface is in a cell. Lines hold the surface. Nodes hold material inside a region, as
+   in a grip, which has no surface there: see MPMCrossingLines.
+------------------------------------------------------------------------- */
+
+bool MPMWall::acts_across() const
+{
+  if (region->varshape) return false;
+  return moves_and_holds || decides() || holds_surface();
+}
+
+/** Do lines hold material in front of the surface? They do with stick and slip on a region in
+ *  explicit steps, and with slip at rest in implicit ones; nodes act on material inside. Nodes hold
+ *  for good what sticks to a region that is driven. */
+bool MPMWall::holds_surface() const
+{
+  const bool sticks = !is_driven() && !in_implicit_steps;
+  return (kind == STICK ? sticks : kind == SLIP && friction == 0.0) && !moves_and_holds;
+}
+
+bool MPMWall::keeps_distance() const
+{
+  return region ? holds_surface() : !decides();
+}
+
+bool MPMWall::prescribes(const double *normal, int d) const
+{
+  return kind == STICK ? velocity[d].given : std::fabs(normal[d]) == 1.0;
+}
+
+bool MPMWall::holds_axis(const MPMField &field) const
+{
+  return acts_on(field) && std::count(face_list.begin(), face_list.end(), 0) && !decides() &&
+      !rotating() && velocity[0].given && velocity[0].variable.empty() && velocity[0].value == 0.0;
+}
+
+/* ---------------------------------------------------------------------- */
+
+bool MPMWall::begin_motion()
+{
+  if (motion_step == update->ntimestep) return false;
+  motion_step = update->ntimestep;
+  steps++;
+  motion.begin(state);
+  if (region_moves()) restore_region();
+  return true;
+}
+
+void MPMWall::find_motion(double dt)
+{
+  evaluate_in_step(lmp, region_moves() || has_variables(), [&] {
+    if (region_moves()) region->prematch();
+    for (int d = 0; d < 3; d++) {
+      const double value = evaluate(lmp, velocity[d]);
+      motion.shift[d] = by_displacement ? (value - state.displaced[d]) / dt : value;
+      state.displaced[d] = value;
+    }
+    if (rotating()) motion.rotate(evaluate(lmp, rate) * dt, axis, center, dt);
+  });
+  const bool total = fields[0]->options.total;
+  if (total) motion.refer_to_start(state, dt);
+  if (region_moves()) {
+    const auto now = MPMRegionMotion::of(region);
+    double *const old = state.region;
+    for (int d = 0; d < 3; d++) motion.shift[d] = (*now[d] - old[d]) / dt;
+    check_speed(dt);
+    if (region->rotateflag) {
+      double origin[3];
+      MathExtra::add3(MPMRegionMotion::point_of(region), old, origin);
+      motion.rotate(region->theta - old[3], MPMRegionMotion::axis_of(region), origin, dt);
+    }
+    for (int k = 0; k < 4; k++) old[k] = *now[k];
+  }
+  if (!state.acted) MathExtra::copy3(motion.shift, motion.before);
+  // solvers evaluate forces and motion of the same time, and nodes of the total frame are the
+  // material
+  motion.changes = state.acted && !in_implicit_steps;
+  (!motion.uniform && !total ? motion.at_end_of_step(dt) : motion).end(state);
+}
+
+/* ----------------------------------------------------------------------
+   A region acts on nodes that are inside at the start of a step: one that crosses more than a
+   cell in a step can pass through a body without touching it. Not all regions give their
+   extent, so this checks displacements alone, not rotations.
+------------------------------------------------------------------------- */
+
+void MPMWall::check_speed(double dt)
+{
+  const double along[3] = {motion.shift[0], motion.shift[1],
+                           domain->dimension == 3 ? motion.shift[2] : 0.0};
+  const double way = dt * MathExtra::len3(along);
+  // LAMMPS of 2025 gives no value to the angle of regions that do not turn
+  if (!std::isfinite(way) || (region->rotateflag && !std::isfinite(region->theta)))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/boundary {}: the motion of its region {} is not finite at step {}", id,
+               region_id, update->ntimestep);
+  for (const auto *field : fields) {
+    const double h = field->lattice.h;
+    if (warned || !(way > (looks_ahead ? COMES_FROM : 1.0) * h)) continue;
+    warned = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/boundary {}: its region crosses {:.3g} cells of fix mpm {} in step "
+                     "{} and can pass through material without touching it: use a smaller "
+                     "timestep; this is said only once",
+                     id, way / h, field->id(), update->ntimestep);
+  }
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMWall::restore_region()
+{
+  for (int k = 0; k < 4; k++) *MPMRegionMotion::of(region)[k] = state.region[k];
+}
+
+static constexpr double FAR = 1.0e8;    // node spacings
+static constexpr double WIDER = 2.0;    // node spacings, around a region that moves
+
+/** Is the place of the region known, so that blocks far from it can be left out? */
+bool MPMWall::knows_place() const
+{
+  return region->nregion == 1 && (placed || !region_moves());
+}
+
+double MPMWall::way_since(const double *then) const
+{
+  double shift[3], way = 0.0;
+  MathExtra::sub3(state.region, then, shift);
+  if (region->rotateflag) {
+    const double *const point = MPMRegionMotion::point_of(region);
+    double farthest[3];
+    for (int d = 0; d < 3; d++)
+      farthest[d] =
+          std::max(std::fabs(domain->boxlo[d] - point[d]), std::fabs(domain->boxhi[d] - point[d])) +
+          std::max(std::fabs(state.region[d]), std::fabs(then[d]));
+    way = std::fabs(state.region[3] - then[3]) * MathExtra::len3(farthest);
+  }
+  return way + MathExtra::len3(shift);
+}
+
+void MPMWall::normal(const MPMField &field, const double *x, double *n) const
+{
+  const double h = field.lattice.h;
+  surface->normal(x, FAR * h, NORMAL_STEP * h, n);
+}
+
+std::function<double(const double *)> MPMWall::distance_from_region(const MPMField &field,
+                                                                    double dt, double more) const
+{
+  const double h = field.lattice.h, far = MPMWallGap::farthest(field, more);
+  if (!region_moves())
+    return [this, far, h](const double *x) {
+      return surface->gap(x, far, h);
+    };
+  return [this, far, h, dt](const double *x) {
+    double y[3], v[3];
+    motion.velocity(x, v);
+    for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
+    return surface->gap(y, far, h);
+  };
+}

@@ -1,0 +1,316 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "walls/mpm_wall_nodes.h"
+
+#include "field/mpm_field.h"
+#include "field/mpm_forces.h"
+#include "math_extra.h"
+#include "math_special.h"
+#include "region.h"
+#include "walls/mpm_wall.h"
+#include "walls/mpm_wall_reaction.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+using MathSpecial::cube;
+
+static constexpr double HAND_OVER = 0.5;    // node spacings, see list_region()
+
+MPMWallNodes::MPMWallNodes(MPMWall &wall, MPMField &field, const Domain &box) :
+    field(field), mirrors(wall, field, box), crossings(wall, field), wall(wall)
+{
+}
+
+void MPMWallNodes::topology_changed()
+{
+  nodes.clear();
+  crossings.clear();
+  approaches.clear();
+  mirrors.find_faces();
+  if (!wall.region)
+    mirrors.list(nodes);
+  else if (!wall.region_moves())
+    list_region();
+}
+
+/* ----------------------------------------------------------------------
+   Blocks in which nodes can be held. Around a moving region that is away from the body there is
+   nothing to hold
+------------------------------------------------------------------------- */
+
+std::vector<char> MPMWallNodes::blocks_to_look_at() const
+{
+  Grid &grid = field.grid;
+  const std::size_t nblocks = grid.blocks.size();
+  std::vector<char> looks_at(nblocks, 1);
+  if (!wall.region_moves() || !wall.holds_surface()) return looks_at;
+  std::vector<char> massive(nblocks);
+  for (std::size_t ib = 0; ib < nblocks; ib++) {
+    const double *record = grid.record((int64_t) ib * NODES_PER_BLOCK);
+    double mass = 0.0;
+    for (int n = 0; n < NODES_PER_BLOCK; n++, record += grid.nreal) mass += record[3];
+    massive[ib] = mass > 0.0;
+  }
+  for (std::size_t ib = 0; ib < nblocks; ib++) {
+    const int *const around = grid.blocks[ib].slot;
+    looks_at[ib] = std::any_of(around, around + 27, [&](int block) {
+      return block >= 0 && massive[block];
+    });
+  }
+  return looks_at;
+}
+
+/* ----------------------------------------------------------------------
+   Nodes inside the region or on its surface, for the state of the region that it has now.
+
+   When the surface of a moving region crosses a plane of nodes, the nodes are not taken or let go
+   at once, but over half a node spacing outside: a node there goes (1 - s^3)^3 of the way to the
+   velocity of the wall in each step, s = 1 at the end. Material in a grip had no part in the strain
+   of the rest of the body; if it is let go at once, it is not in equilibrium and makes waves as
+   high as the force itself. A node that is taken at once gets the missing momentum in one step.
+   With slow motion the node slips behind the wall before it is let go: by (1 - share)/share of the
+   change that its acceleration gives in each step, which is little at first because of the power of
+   s.
+
+   Implicit steps have no hand-over (moves_and_holds): to go a part of the way is no projection, and
+   in equilibrium a node that goes half the way in each step lags as much as one that is not held.
+   Lines through the surface hold the material in front of it, as for separate. Where there is also
+   material behind, in a grip, single nodes up to half a spacing outside act, fully.
+------------------------------------------------------------------------- */
+
+void MPMWallNodes::list_region()
+{
+  Grid &grid = field.grid;
+  const int dim = field.lattice.dim;
+  const double h = field.lattice.h;
+  const bool moves = wall.region_moves(), hands_over = moves && wall.kind != MPMWall::SEPARATE,
+             across = wall.acts_across();
+  const double taken = (hands_over ? HAND_OVER : MPMWall::ON_SURFACE) * h;
+  const double far = MPMWall::FAR * h, next = across ? 1.001 * h : taken;
+  Region *const region = wall.region;
+  const auto &surface = wall.surface;
+  const bool box_known = region->bboxflag && !moves;
+  const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo};
+  const double hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
+  const double radius = 0.5 * (grid.side - 1) * h * sqrt((double) dim);
+  const double beyond = across ? h : MPMWall::ON_SURFACE * h;
+  std::vector<MPMWallNode> outside;    // next to the surface
+
+  nodes.clear();
+  if (!moves) region->prematch();
+  const std::vector<char> looks_at = blocks_to_look_at();
+  for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
+    if (!looks_at[ib]) continue;
+    const int64_t first_node = (int64_t) ib * NODES_PER_BLOCK;
+    double first[3], last[3], mid[3];
+    grid.node_position(first_node, first);
+    grid.node_position(first_node + NODES_PER_BLOCK - 1, last);
+    bool near = true;
+    for (int d = 0; d < 3; d++) {
+      mid[d] = 0.5 * (first[d] + last[d]);
+      if (box_known && (last[d] < lo[d] - beyond || first[d] > hi[d] + beyond)) near = false;
+    }
+    if (near && region->nregion == 1) {
+      const double distance = surface->distance(mid, far);
+      near = distance <= radius + h || distance >= far;
+    }
+    if (!near) continue;
+
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (grid.blocks[ib].alias >> n & 1) continue;
+      double x[3];
+      grid.node_position(first_node + n, x);
+      MPMWallNode s = {first_node + n};
+      if (!region->match(x[0], x[1], x[2])) {
+        const double gap = surface->distance(x, next);
+        if (across && gap > MPMWall::ON_SURFACE * h && gap < next) {
+          s.distance = gap;
+          outside.push_back(s);
+        }
+        if (gap >= taken) continue;
+        if (gap > MPMWall::ON_SURFACE * h && !wall.moves_and_holds)
+          s.share = cube(1.0 - cube(gap / taken));
+      }
+      if (wall.kind != MPMWall::STICK || !wall.moves_and_holds) wall.normal(field, x, s.normal);
+      if (region->varshape || across) s.distance = surface->distance(x, far);
+      nodes.push_back(s);
+    }
+  }
+  if (!across) return;
+  crossings.list(nodes, outside);
+  if ((!hands_over || wall.moves_and_holds) && !wall.holds_surface()) crossings.take_nodes(nodes);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMWallNodes::follow_region(double dt)
+{
+  if (wall.region->varshape) {
+    const double far = MPMWall::FAR * field.lattice.h;
+    for (auto &node : nodes) {
+      double x[3], v[3];
+      field.grid.node_position(node.node, x);
+      const double distance = wall.surface->distance(x, far);
+      node.growth = 0.0;
+      if (std::max(std::fabs(distance), std::fabs(node.distance)) >= far) continue;
+
+      // the normal speed of the surface replaces that of the rigid motion
+
+      wall.motion.velocity(field.grid, node.node, v);
+      node.growth = (node.distance - distance) / dt - MathExtra::dot3(v, node.normal);
+    }
+  }
+  const bool hands_over =
+      wall.kind == MPMWall::SLIP && !wall.moves_and_holds && !wall.holds_surface();
+  if (hands_over && wall.acts_across()) crossings.take_nodes(nodes);
+}
+
+void LAMMPS_NS::update_motion(MPMWall &wall, std::vector<MPMWallNodes> &fields, double dt)
+{
+  if (!wall.begin_motion()) return;
+  const bool moves = wall.region_moves();
+  if (moves)
+    for (auto &list : fields) list.list_region();
+  wall.find_motion(dt);
+  if (moves)
+    for (auto &list : fields) list.follow_region(dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+std::size_t MPMWallNodes::first_crossing() const
+{
+  std::size_t n = 0;
+  for (const auto &face : mirrors.faces) n += face.size();
+  return n;
+}
+
+void MPMWallNodes::act(MPMWallContact &contact)
+{
+  mirrors.act(contact);
+  crossings.act(contact, first_crossing());
+  auto &held = crossings.held_nodes;
+  if (contact.constraints && wall.moves_and_holds)
+    for (std::size_t k = 0; k < approaches.size(); k++) {
+      const auto &line = approaches[k];
+      if ((*contact.constraints)[first_approach() + k].active)
+        held.insert(held.end(), line.node, line.node + line.n);
+    }
+  std::sort(held.begin(), held.end());
+  for (std::size_t k = 0; k < nodes.size(); k++) {
+    if (!held.empty() && std::binary_search(held.begin(), held.end(), nodes[k].node)) continue;
+    contact.use_constraint(first_node() + k);
+    contact.unit = field.grid.record(nodes[k].node)[3];
+    act_on_node(contact, nodes[k]);
+  }
+  contact.constraint = nullptr;
+  contact.unit = 1.0;
+}
+
+void MPMWallNodes::act_on_node(MPMWallContact &contact, MPMWallNode &node)
+{
+  MPMWallReaction &reaction = contact.reaction;
+  const int dim = field.lattice.dim;
+  const double *r = field.grid.record(node.node), *n = node.normal;
+  if (r[3] <= 0.0) return;
+
+  double V[3], v[3];
+  wall.motion.velocity(field.grid, node.node, V);
+  for (int d = 0; d < dim; d++) V[d] += node.growth * n[d];
+
+  if (wall.kind == MPMWall::STICK || (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0)) {
+    for (int d = 0; d < dim; d++) v[d] = wall.velocity[d].given ? V[d] : r[d];
+  } else {
+    double normal = 0.0;    // speed of the node away from the wall
+    for (int d = 0; d < dim; d++) normal += (r[d] - V[d]) * n[d];
+    double slide[3], length = 0.0;
+    for (int d = 0; d < dim; d++) {
+      slide[d] = r[d] - V[d] - normal * n[d];
+      length += slide[d] * slide[d];
+    }
+    const double push = node.touched ? -normal : 0.0;
+    const double of_water = node.touched ? contact.water_on(&node.node, 1, n) / r[3] : 0.0;
+    const double keep = 1.0 - contact.tangential_share(node.state, push, of_water, sqrt(length));
+    if (node.state == MPMContactState::OPEN) {
+      if (of_water > 0.0) contact.push_by_water(field, &node.node, 1, n);
+      return;
+    }
+    for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
+    if (node.state == MPMContactState::SLIDING) reaction.begin_sliding(n);
+  }
+  const double whole[3] = {v[0], v[1], v[2]};
+  for (int d = 0; d < dim && node.share < 1.0; d++) v[d] = r[d] + node.share * (v[d] - r[d]);
+  reaction.set_velocity(node.node, V, v, nullptr, whole);
+  reaction.end_sliding();
+}
+
+void MPMWallNodes::find_water(MPMWallContact &contact, double dt) const
+{
+  contact.clear_water();
+  if (!pore_pressure(field)) return;
+  std::vector<char> near(field.grid.blocks.size(), 0);
+  mirrors.mark_blocks(near);
+  crossings.mark_blocks(near);
+  for (const auto &node : nodes) near[node.node / NODES_PER_BLOCK] = 1;
+  contact.find_water(field, near, dt);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMWallNodes::list_ties(std::vector<int64_t> &ties, std::vector<int64_t> &others) const
+{
+  crossings.list_ties(ties);
+  for (const auto &line : approaches) {
+    ties.push_back(line.n);
+    ties.insert(ties.end(), line.node, line.node + line.n);
+  }
+  mirrors.list_ties(ties, others);
+}
+
+/** Calls use(node, d) for the components that the wall prescribes, except at mirrors. */
+template <class Use> void MPMWallNodes::visit_prescribed(const Use &use) const
+{
+  const int dim = field.lattice.dim;
+  for (const auto &node : nodes)
+    for (int d = 0; d < dim; d++)
+      if (wall.prescribes(node.normal, d)) use(node.node, d);
+  for (const auto &line : crossings.lines)
+    for (int k = 0; k < line.inside; k++)
+      for (int d = 0; d < dim && line.node[k] >= 0; d++)
+        if (wall.prescribes(line.normal, d)) use(line.node[k], d);
+}
+
+void MPMWallNodes::mark_prescribed(std::vector<char> &held) const
+{
+  mirrors.mark_prescribed(held);
+  visit_prescribed([&](int64_t node, int d) {
+    held[node] |= 1 << d;
+  });
+}
+
+void MPMWallNodes::predict(const std::vector<char> &near, MPMPredictedVelocities &to) const
+{
+  mirrors.predict(near, to);
+  visit_prescribed([&](int64_t node, int d) {
+    if (!near[node / NODES_PER_BLOCK]) return;
+    double V[3];
+    wall.motion.velocity(field.grid, node, V);
+    to.held[3 * node + d] = V[d];
+  });
+}
+
+double MPMWallNodes::memory_usage() const
+{
+  return mirrors.memory_usage() + nodes.capacity() * sizeof(MPMWallNode) +
+      crossings.lines.capacity() * sizeof(MPMCrossing) +
+      approaches.capacity() * sizeof(MPMApproach);
+}

@@ -1,0 +1,541 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+// Contact that an implicit solver decides. While it is known what touches, walls hold the normal
+// component of their lines of nodes and single nodes, as slip does; the impulse that this needs
+// gives the force N of each. Friction acts at the surface: on the nodes of a line in the shares a_k
+// with which they make the velocity there, so that a uniform shear stress is in balance node by
+// node. The slip is s = sum_k a_k (u_k - dt V_k), along the surface.
+
+#include "walls/mpm_wall_trial.h"
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "field/mpm_field.h"
+#include "field/mpm_point_map.h"
+#include "field/mpm_stencil.h"
+#include "math_extra.h"
+#include "region.h"
+#include "update.h"
+#include "walls/mpm_contact_search.h"
+#include "walls/mpm_line_constraint.h"
+#include "walls/mpm_wall.h"
+#include "walls/mpm_wall_nodes.h"
+#include "walls/mpm_wall_reaction.h"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+static constexpr double LONGEST = 0.99;    // longest w, so that a body that slips keeps a stiffness
+// least pull to let go, relative to the largest push; least depth in the wall, in node spacings
+static constexpr double WRONG = 1.0e-9;
+static constexpr double STILL_RIGHT = 1.0e-4;    // the same in later rounds
+static constexpr int AT_ONCE = 6;                // rounds in which everything wrong is changed
+// distance from a wall, in node spacings, at which material touches it if other material does, and
+// at which statics tries whether it does
+static constexpr double NEXT_TO = 0.08, NEARBY = 0.4;
+// error of mean distances, in node spacings, within which they decide nothing: contact with regions
+// is tabulated
+static constexpr double NOT_KNOWN = 0.03;
+static constexpr double THROUGH = 0.5;     // node spacings in the wall where contact has failed
+static constexpr double AT_WALL = 0.01;    // node spacings
+
+double MPMWallTrial::tolerance()
+{
+  return NOT_KNOWN;
+}
+
+bool MPMWallTrial::decides(const MPMWallNodes &list) const
+{
+  return in_trials && (wall.decides() || wall.moves_and_holds) && &list.field == field;
+}
+
+bool MPMWallTrial::has_friction() const
+{
+  return wall.friction > 0.0;
+}
+
+double MPMWallTrial::width() const
+{
+  return std::max(eps, soft);
+}
+
+MPMWallNodes &MPMWallTrial::nodes()
+{
+  return *std::find_if(fields.begin(), fields.end(), [this](const MPMWallNodes &list) {
+    return &list.field == field;
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMWallTrial::begin_trials(MPMField &of, double step, double time, double regular, bool rests)
+{
+  if (wall.heat.heats())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/boundary {}: implicit steps do not know the heat of friction: remove heat, "
+               "or use explicit steps",
+               wall.id);
+  field = &of;
+  in_trials = true;
+  dt = step;
+  slip_time = time;
+  eps = regular;
+  soft = 0.0;
+  update_motion(wall, fields, dt);
+  MPMWallNodes &list = nodes();
+  const bool separates = wall.kind == MPMWall::SEPARATE;
+  closes = wall.is_grip = false;
+  rounds = 0;
+  list.approaches.clear();
+  if (separates) {
+    search.find_contacts(list, dt, tolerance());
+    search.find_approaches(list, dt);
+    find_clearance(list);
+  } else if (wall.moves_and_holds && wall.acts_across()) {
+    search.check_gaps(list, dt);
+    search.find_approaches(list, dt);
+  }
+  list_constraints(list);
+
+  // Where other material touches, round-off would decide whether material next to the wall does. In
+  // statics, nothing else may hold it
+
+  const std::size_t first_node = list.first_node();
+  int any = 0, touched = 0;
+  for (std::size_t k = 0; k < constraints.size() && separates; k++)
+    if (constraints[k].active && constraints[k].n > 0 &&
+        (k < first_node || !is_deep(list, k - first_node)))
+      any = 1;
+  if (separates) MPI_Allreduce(&any, &touched, 1, MPI_INT, MPI_MAX, world);
+  for (std::size_t k = first_node; k < constraints.size() && separates && !touched; k++)
+    constraints[k].possible = constraints[k].active = false;
+  start_approaches(list, touched, rests);
+}
+
+/** Keeps the nodes of a constraint that have mass, with weights that add up to one. */
+static void keep_massive(Grid &grid, MPMContactConstraint &c)
+{
+  int n = 0;
+  double all = 0.0;
+  for (int j = 0; j < c.n; j++) {
+    if (c.node[j] < 0 || !(grid.record(c.node[j])[3] > 0.0) || c.weight[j] == 0.0) continue;
+    c.node[n] = c.node[j];
+    c.weight[n++] = c.weight[j];
+    all += c.weight[j];
+  }
+  c.n = n;
+  for (int j = 0; j < n; j++) c.weight[j] /= all;
+}
+
+/** A constraint on a line of nodes. */
+static MPMContactConstraint constraint_on(Grid &grid, const NodeLine &line, const double *normal,
+                                          bool possible)
+{
+  MPMContactConstraint c;
+  static_cast<NodeLine &>(c) = line;
+  MathExtra::copy3(normal, c.normal);
+  c.possible = c.active = possible;
+  keep_massive(grid, c);
+  return c;
+}
+
+/** Lists the constraints of faces, crossings, and nodes. */
+void MPMWallTrial::list_constraints(MPMWallNodes &list)
+{
+  Grid &grid = field->grid;
+  const MPMStencil stencil(*field);
+  const bool separates = wall.kind == MPMWall::SEPARATE;
+  constraints.clear();
+  for (const auto &face : list.mirrors.faces) {
+    double normal[3] = {0.0, 0.0, 0.0};
+    normal[face.axis] = face.inward;
+    for (const auto &line : face.lines)
+      constraints.push_back(constraint_on(grid, line, normal, !separates || line.touched));
+    for (const auto &column : face.columns) {
+      // in a mirror plane, functions are even: that of the plane, and those of its neighbors on
+      // both sides
+      NodeLine line;
+      int first;
+      double weight[NodeLine::MOST];
+      const int n = stencil.weights((double) face.plane, first, weight);
+      for (int j = 0; j < n; j++) {
+        const int away = face.inward * (first + j - face.plane);
+        if (std::abs(away) > 1) continue;
+        line.node[line.n] = column.node[away < 0 ? MPMMirrorColumn::DEPTH + 1 : away];
+        line.weight[line.n++] = weight[j];
+      }
+      constraints.push_back(constraint_on(grid, line, normal, !separates || column.touched));
+    }
+  }
+  for (const auto &line : list.crossings.lines)
+    constraints.push_back(constraint_on(grid, line, line.normal, !separates || line.touched));
+  for (const auto &node : list.nodes) {
+    NodeLine line;
+    line.n = 1;
+    line.node[0] = node.node;
+    line.weight[0] = 1.0;
+    constraints.push_back(constraint_on(grid, line, node.normal, !separates || node.touched));
+  }
+}
+
+/** Adds the constraints of approaches. touched: does other material touch the wall? */
+void MPMWallTrial::start_approaches(MPMWallNodes &list, bool touched, bool rests)
+{
+  const double h = field->lattice.h;
+  for (const auto &line : list.approaches) {
+    auto c = constraint_on(field->grid, line, line.normal, true);
+    if (wall.moves_and_holds) {
+      c.active = line.gap < NEARBY * h;
+    } else {
+      c.gap = touched && line.gap < NEXT_TO * h ? 0.0 : line.gap;
+      c.active = touched ? c.gap == 0.0 : rests && line.gap < NEARBY * h;
+    }
+    constraints.push_back(c);
+  }
+}
+
+/** Is the node so far behind the surface that it is not known whether material touches it? */
+bool MPMWallTrial::is_deep(const MPMWallNodes &list, std::size_t node) const
+{
+  return !wall.region || -list.nodes[node].distance > MPMWall::DEEPEST * list.field.lattice.h;
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMWallTrial::forget_pushes()
+{
+  for (auto &c : constraints) c.impulse = 0.0;
+}
+
+void MPMWallTrial::take_base()
+{
+  for (auto &c : constraints) c.base = c.impulse;
+}
+
+void MPMWallTrial::take_forces(double scale)
+{
+  for (auto &c : constraints) c.force = (c.impulse - c.base) / scale;
+}
+
+bool MPMWallTrial::close_gaps(bool yes)
+{
+  closes = yes;
+  return std::any_of(constraints.begin(), constraints.end(), [](const MPMContactConstraint &c) {
+    return c.active && c.gap > 0.0;
+  });
+}
+
+/** Motion of the surface along the wall, and away from it, relative to the motion of the wall in
+ *  this time. */
+void MPMWallTrial::find_slip(const MPMContactConstraint &c, const double *u, double time,
+                             double *slip, double &away) const
+{
+  const int dim = field->lattice.dim;
+  MathExtra::zero3(slip);
+  for (int j = 0; j < c.n; j++) {
+    double V[3] = {0.0, 0.0, 0.0};
+    if (time > 0.0) wall.motion.velocity(field->grid, c.node[j], V);
+    for (int d = 0; d < dim; d++) slip[d] += c.weight[j] * (u[dim * c.node[j] + d] - time * V[d]);
+  }
+  away = MathExtra::dot3(slip, c.normal);
+  for (int d = 0; d < 3; d++) slip[d] -= away * c.normal[d];
+}
+
+/** Calls use(constraint) for all contacts that are held. */
+template <class Use> void MPMWallTrial::visit_active(const Use &use)
+{
+  for (auto &c : constraints)
+    if (c.active && c.n > 0) use(c);
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMWallTrial::add_friction(const double *u, double *force)
+{
+  const int dim = field->lattice.dim;
+  if (wall.friction == 0.0) return;
+  const double width = this->width();
+  visit_active([&](MPMContactConstraint &c) {
+    double away;
+    find_slip(c, u, slip_time, c.slip, away);
+    MathExtra::zero3(c.friction);
+    if (!(c.force > 0.0)) return;
+    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width);
+    for (int d = 0; d < dim; d++) {
+      c.friction[d] = -wall.friction * c.force * c.slip[d] / length;
+      for (int j = 0; j < c.n; j++) force[dim * c.node[j] + d] += c.weight[j] * c.friction[d];
+    }
+  });
+}
+
+/* ----------------------------------------------------------------------
+   Where a line reverses its slip, friction changes its sign within a distance of eps, which a
+   derivative taken farther away does not show: Newton's method would oscillate. Therefore w = s/l,
+   l = (|s|^2 + eps^2)^(1/2), is an unknown of its own, and l w = s is linearized:
+
+     l dw + w s.ds/l = s + ds - l w
+
+   so that friction changes as -mu N (ds - w s.ds/l)/l. This is stiff as long as w, which is a
+   little shorter than one, does not have the direction of s, and never quite soft (T.F. Chan, G.H.
+   Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964, for other sums of lengths).
+------------------------------------------------------------------------- */
+
+/** Change of direction for a change ds of the slip: (ds - w s.ds/l)/l. */
+void MPMWallTrial::change_of_direction(const MPMContactConstraint &c, const double *slip,
+                                       double *change) const
+{
+  const double width = this->width(), length = std::sqrt(MathExtra::lensq3(c.slip) + width * width),
+               along = MathExtra::dot3(c.slip, slip) / length;
+  for (int d = 0; d < 3; d++) change[d] = (slip[d] - along * c.direction[d]) / length;
+}
+
+void MPMWallTrial::add_friction_change(const double *du, double scale, double *dforce)
+{
+  const int dim = field->lattice.dim;
+  if (wall.friction == 0.0) return;
+  const double width = this->width();
+  visit_active([&](MPMContactConstraint &c) {
+    if (!(c.force > 0.0)) return;
+    double slip[3], turn[3], away;
+    find_slip(c, du, 0.0, slip, away);
+    change_of_direction(c, slip, turn);
+    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width),
+                 more = (c.impulse - c.base) / scale;
+    for (int d = 0; d < dim; d++) {
+      const double change = -wall.friction * (more * c.slip[d] / length + c.force * turn[d]);
+      for (int j = 0; j < c.n; j++) dforce[dim * c.node[j] + d] += c.weight[j] * change;
+    }
+  });
+}
+
+void MPMWallTrial::correct(const double *du)
+{
+  if (wall.friction == 0.0) return;
+  const double width = this->width();
+  visit_active([&](MPMContactConstraint &c) {
+    double slip[3], turn[3], away;
+    find_slip(c, du, 0.0, slip, away);
+    change_of_direction(c, slip, turn);
+    double *const w = c.direction;
+    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width);
+    for (int d = 0; d < 3; d++) w[d] = c.slip[d] / length + turn[d];
+    const double size = MathExtra::len3(w);
+    if (size > LONGEST) MathExtra::scale3(LONGEST / size, w);
+  });
+}
+
+void MPMWallTrial::add_friction_blocks(double *blocks)
+{
+  const int dim = field->lattice.dim;
+  if (wall.friction == 0.0) return;
+  visit_active([&](MPMContactConstraint &c) {
+    if (!(c.force > 0.0)) return;
+    double along[3] = {0.0, 0.0, 0.0}, turn[3];
+    const double slope = wall.friction * c.force;
+    for (int e = 0; e < dim; e++) {
+      for (int d = 0; d < 3; d++) along[d] = (d == e) - c.normal[d] * c.normal[e];
+      change_of_direction(c, along, turn);
+      for (int j = 0; j < c.n; j++)
+        for (int d = 0; d < dim; d++)
+          blocks[dim * dim * c.node[j] + dim * d + e] +=
+              c.weight[j] * c.weight[j] * slope * turn[d];
+    }
+  });
+}
+
+void MPMWallTrial::add_friction_stiffness(double *stiffness)
+{
+  if (wall.friction == 0.0) return;
+  visit_active([&](MPMContactConstraint &c) {
+    if (!(c.force > 0.0)) return;
+    double turn[3];
+    change_of_direction(c, c.slip, turn);
+    const double size = MathExtra::lensq3(c.slip), length = std::sqrt(size + width() * width()),
+                 along = size > 0.0 ? MathExtra::dot3(turn, c.slip) / size : 1.0 / length;
+    for (int j = 0; j < c.n; j++)
+      stiffness[c.node[j]] += c.weight[j] * wall.friction * c.force * along;
+  });
+}
+
+/* ----------------------------------------------------------------------
+   At first, everything that is wrong is changed. If this oscillates, only the worst half is
+   changed, and what is almost right stays
+------------------------------------------------------------------------- */
+
+bool MPMWallTrial::decide(const double *u, double unbalanced)
+{
+  if (wall.kind != MPMWall::SEPARATE || unbalanced > 0.0) return false;
+  const double h = field->lattice.h;
+  double mine = 0.0, largest, worst;
+  for (const auto &c : constraints)
+    if (c.active) mine = std::max(mine, std::fabs(c.force));
+  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
+  double slip[3], away;
+  std::vector<double> wrong(constraints.size(), 0.0);
+  mine = 0.0;
+  for (std::size_t k = 0; k < constraints.size(); k++) {
+    const MPMContactConstraint &c = constraints[k];
+    if (!c.possible || c.n == 0) continue;
+    if (c.active) {
+      wrong[k] = largest > 0.0 ? -c.force / largest : 0.0;
+    } else {
+      find_slip(c, u, dt, slip, away);
+      wrong[k] = (-away - c.gap) / h;
+    }
+    mine = std::max(mine, wrong[k]);
+  }
+  MPI_Allreduce(&mine, &worst, 1, MPI_DOUBLE, MPI_MAX, world);
+  const bool all = rounds++ < AT_ONCE;
+  if (worst <= (all ? WRONG : STILL_RIGHT)) return false;
+  bool changed = false;
+  for (std::size_t k = 0; k < constraints.size(); k++) {
+    if (wrong[k] <= (all ? WRONG : 0.5 * worst)) continue;
+    constraints[k].active = !constraints[k].active;
+    changed = true;
+  }
+  return changed;
+}
+
+/* ----------------------------------------------------------------------
+   friction at the end of the step, before walls act; its work is that with the final velocities of
+   the nodes
+------------------------------------------------------------------------- */
+
+void MPMWallTrial::apply_friction(MPMWallReaction &reaction)
+{
+  const int dim = field->lattice.dim;
+  if (wall.friction == 0.0) return;
+  visit_active([&](MPMContactConstraint &c) {
+    for (int j = 0; j < c.n; j++) {
+      const int64_t node = c.node[j];
+      const double *const record = field->grid.record(node);
+      double V[3], v[3] = {0.0, 0.0, 0.0}, whole[3] = {0.0, 0.0, 0.0};
+      wall.motion.velocity(field->grid, node, V);
+      for (int d = 0; d < dim; d++) {
+        v[d] = record[d] + friction_share * dt * c.weight[j] * c.friction[d] / record[3];
+        whole[d] = final_velocity[dim * node + d];
+      }
+      reaction.set_velocity(node, V, v, nullptr, whole);
+    }
+  });
+}
+
+/* ---------------------------------------------------------------------- */
+
+void MPMWallTrial::act_on_approaches(MPMWallReaction &reaction, MPMWallNodes &list)
+{
+  const std::size_t first = list.first_approach();
+  for (std::size_t k = 0; k < list.approaches.size(); k++)
+    act_on_approach(reaction, list, list.approaches[k], constraints[first + k]);
+}
+
+/* ----------------------------------------------------------------------
+   Holds the normal component at the surface of the material, as in MPMCrossingLines. The wall does
+   no work on the way to it
+------------------------------------------------------------------------- */
+
+void MPMWallTrial::act_on_approach(MPMWallReaction &reaction, MPMWallNodes &list,
+                                   const MPMApproach &line, MPMContactConstraint &c)
+{
+  if (!c.active) return;
+  const int dim = list.field.lattice.dim;
+  const bool sticks = wall.kind == MPMWall::STICK;
+  const double *const n = line.normal,
+                      closing = closes || reaction.is_counting() ? c.gap / dt : 0.0;
+  MPMLineConstraint at;
+  if (!at.find(wall, list.field, line, 1)) return;
+  double relative[4], change[4], all[3][4] = {};
+  for (int k = 0; k < at.n; k++) {
+    relative[k] = closing;
+    for (int d = 0; d < dim; d++) relative[k] += (at.record[k][d] - at.V[k][d]) * n[d];
+  }
+  const double lambda = at.solve(relative, change);
+  if (!reaction.is_counting()) c.impulse += at.total * lambda;
+  for (int d = 0; d < dim && sticks; d++) {
+    for (int k = 0; k < at.n; k++) relative[k] = at.record[k][d] - at.V[k][d];
+    at.solve(relative, all[d]);
+  }
+  for (int k = 0; k < at.n; k++) {
+    double v[3] = {0.0, 0.0, 0.0}, whole[3] = {0.0, 0.0, 0.0};
+    for (int d = 0; d < dim; d++) {
+      v[d] = at.record[k][d] + (sticks ? all[d][k] : change[k] * n[d]);
+      whole[d] = v[d] + closing * n[d];
+    }
+    reaction.set_velocity(at.node[k], at.V[k], v, nullptr, whole);
+  }
+}
+
+/** Distances of points from the wall at the start of the step. */
+void MPMWallTrial::find_clearance(MPMWallNodes &list)
+{
+  const auto &faces = list.mirrors.faces;
+  const int nfaces = wall.region ? 1 : (int) faces.size();
+  clearance.resize((std::size_t) nfaces * atom->nmax);
+  if (wall.region && !wall.region_moves()) wall.region->prematch();
+  const auto away = wall.region ? wall.distance_from_region(*field, dt) : nullptr;
+  for (const auto &run : field->map->runs)
+    for (bigint i = run.first; i < run.last; i++)
+      for (int f = 0; f < nfaces; f++) {
+        const double *const x = atom->x[i];
+        double &distance = clearance[nfaces * i + f];
+        if (wall.region)
+          distance = away(x);
+        else
+          distance = faces[f].inward * (x[faces[f].axis] - faces[f].position(*domain));
+      }
+}
+
+/** Checks that no material that was in front of the wall, and was not found to touch it, is in the
+ *  wall now. */
+void MPMWallTrial::check_arrival()
+{
+  if (!wall.looks_ahead || !field) return;
+  const double h = field->lattice.h;
+  const auto &faces = nodes().mirrors.faces;
+  const int nfaces = wall.region ? 1 : (int) faces.size();
+  double worst[2] = {0.0, 0.0}, all[2];    // distance that a point came from, depth
+  const double far = MPMWallGap::farthest(*field);
+  if (wall.region) wall.region->prematch();
+  for (const auto &run : field->map->runs)
+    for (bigint i = run.first; i < run.last; i++)
+      for (int f = 0; f < nfaces; f++) {
+        const double before = clearance[nfaces * i + f], *const x = atom->x[i];
+        if (!(before > 0.0)) continue;
+        double depth;
+        if (wall.region) {
+          depth = -wall.surface->gap(x, far, h);
+        } else {
+          const int a = faces[f].axis;
+          depth =
+              -faces[f].inward * (x[a] - faces[f].position(*domain) - dt * wall.motion.shift[a]);
+        }
+        if (depth > THROUGH * h || (depth > AT_WALL * h && before > MPMWall::COMES_FROM * h)) {
+          worst[0] = std::max(worst[0], before / h);
+          worst[1] = std::max(worst[1], depth / h);
+        }
+      }
+  MPI_Allreduce(worst, all, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (all[1] > 0.0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/boundary {}: material from {:.3g} node spacings away came {:.3g} node "
+               "spacings into the wall in step {}; fix mpm/implicit finds contact of what is "
+               "within {} node spacings of a wall at the start of a step: use a smaller timestep, "
+               "smaller steps of load, or a place nearer to the wall at the start",
+               wall.id, all[0], all[1], update->ntimestep, MPMWall::COMES_FROM);
+}
+
+double MPMWallTrial::memory_usage() const
+{
+  return clearance.capacity() * sizeof(double) +
+      constraints.capacity() * sizeof(MPMContactConstraint);
+}

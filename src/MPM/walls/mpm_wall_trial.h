@@ -1,0 +1,104 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_WALL_TRIAL_H
+#define LMP_MPM_WALL_TRIAL_H
+
+#include "field/mpm_trial_contact.h"
+#include "pointers.h"
+#include "walls/mpm_wall_contact.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+class MPMContactSearch;
+class MPMWall;
+class MPMWallNodes;
+class MPMWallReaction;
+
+/** Contact of a wall that an implicit solver decides, as an active set of constraints. */
+class MPMWallTrial : protected Pointers, public MPMTrialContact {
+ public:
+  MPMWallTrial(class LAMMPS *lmp, MPMWall &wall, std::vector<MPMWallNodes> &fields,
+               MPMContactSearch &search) :
+      Pointers(lmp),
+      wall(wall), fields(fields), search(search)
+  {
+  }
+
+  /** One for each line at a face, crossing, node, and approach, in this order. */
+  std::vector<MPMContactConstraint> constraints;
+
+  /** Start of a run, without trials until they begin. */
+  void begin_run() { in_trials = false; }
+  /** Does a solver decide the contact of these nodes? */
+  bool decides(const MPMWallNodes &) const;
+  /** Has a solver begun trials in this run? */
+  bool has_begun() const { return in_trials; }
+  /** Distance in node spacings at which material counts as touching the wall. */
+  static double tolerance();
+  /** The friction acts on the nodes at the end of the step, before walls act. */
+  void apply_friction(MPMWallReaction &);
+  /** Holds the material that was not at the wall at the start of the step. */
+  void act_on_approaches(MPMWallReaction &, MPMWallNodes &);
+  double memory_usage() const;
+
+  void begin_trials(MPMField &, double dt, double slip_time, double eps, bool rests) override;
+  bool close_gaps(bool yes) override;
+  void check_arrival() override;
+  bool find_carried(MPMField &, std::vector<double> &) override;
+  void bear_carried(MPMField &, double *force) override;
+  bool has_friction() const override;
+  void forget_pushes() override;
+  void take_base() override;
+  void take_forces(double scale) override;
+  void add_friction(const double *u, double *force) override;
+  void add_friction_change(const double *du, double scale, double *dforce) override;
+  void add_friction_blocks(double *blocks) override;
+  void add_friction_stiffness(double *stiffness) override;
+  void correct(const double *du) override;
+  bool decide(const double *u, double unbalanced) override;
+  void soften(double by) override { soft = by; }
+  void foresee_velocities(const double *v, double share) override
+  {
+    final_velocity = v;
+    friction_share = share;
+  }
+
+ private:
+  MPMWall &wall;
+  std::vector<MPMWallNodes> &fields;
+  MPMContactSearch &search;
+
+  bool in_trials = false;
+  MPMField *field = nullptr;                 // of the solver
+  const double *final_velocity = nullptr;    // of nodes at the end of the step
+  double dt = 0.0, slip_time = 0.0, eps = 0.0, soft = 0.0;
+  double friction_share = 1.0;    // share of the friction that nodes get
+  int rounds = 0;                 // rounds of decisions in this step
+  // lines that are held move to the wall now; else they are at rest relative to it
+  bool closes = false;
+  std::vector<double> clearance;    // [point][face] from the wall at the start of the step
+
+  MPMWallNodes &nodes();
+  void list_constraints(MPMWallNodes &);
+  void start_approaches(MPMWallNodes &, bool touched, bool rests);
+  void act_on_approach(MPMWallReaction &, MPMWallNodes &, const struct MPMApproach &,
+                       MPMContactConstraint &);
+  bool is_deep(const MPMWallNodes &, std::size_t node) const;
+  void find_clearance(MPMWallNodes &);
+  double width() const;
+  template <class Use> void visit_active(const Use &use);
+  void change_of_direction(const MPMContactConstraint &, const double *slip, double *change) const;
+  void find_slip(const MPMContactConstraint &, const double *u, double time, double *slip,
+                 double &away) const;
+};
+
+}    // namespace LAMMPS_NS
+
+#endif
