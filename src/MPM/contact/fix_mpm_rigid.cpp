@@ -7,8 +7,8 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Each node inside of the body that moves into it gets an impulse, and the body the opposite one, such
-   that afterwards the node moves like the material of the body there, V + Omega x r: in all
+   Each node inside of the body that moves into it gets an impulse, and the body the opposite one,
+   such that afterwards the node moves like the material of the body there, V + Omega x r: in all
    directions (stick), or along the normal (slip, separate; separate: no impulse may pull). With the
    mass m_i of the nodes and their velocities v_i before, all of these together make a linear system
    for V and Omega of 6 equations,
@@ -16,9 +16,9 @@
      M V + sum_i m_i N_i (V + Omega x r_i)             = M V' + sum_i m_i N_i v_i
      I Omega + sum_i r_i x m_i N_i (V + Omega x r_i)   = L'   + sum_i r_i x m_i N_i v_i
 
-   with N_i = 1 where a node sticks and (n_i + mu t_i) n_i^T where it slides, where t_i is the direction of
-   friction. Which nodes take part, which of them stick (those that friction is able to hold), and t_i
-   follow from the solution, so that it is repeated until they stay the same.
+   with N_i = 1 where a node sticks and (n_i + mu t_i) n_i^T where it slides, where t_i is the
+   direction of friction. Which nodes take part, which of them stick (those that friction is able to
+   hold), and t_i follow from the solution, so that it is repeated until they stay the same.
 ------------------------------------------------------------------------- */
 
 #include "contact/fix_mpm_rigid.h"
@@ -33,6 +33,7 @@
 #include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
 #include "force.h"
+#include "math/coulomb.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
 #include "modify.h"
@@ -255,36 +256,6 @@ void FixMPMRigid::init_action()
 }
 
 /* ----------------------------------------------------------------------
-   inertia about the center, in space
-------------------------------------------------------------------------- */
-
-void FixMPMRigid::inertia(double out[3][3]) const
-{
-  double half[3][3];
-  MathExtra::times3(Q, body_inertia, half);
-  MathExtra::times3_transpose(half, Q, out);
-}
-
-/* ----------------------------------------------------------------------
-   angular velocity from angular momentum. What holds an axis takes up the moment that keeps the
-   angular velocity around it zero
-------------------------------------------------------------------------- */
-
-void FixMPMRigid::spin()
-{
-  double I[3][3], inverse[3][3], moment[3];
-  inertia(I);
-  for (int d = 0; d < 3; d++) {
-    moment[d] = fixed[3 + d] ? 0.0 : L[d];
-    if (!fixed[3 + d]) continue;
-    for (int e = 0; e < 3; e++) I[d][e] = I[e][d] = 0.0;
-    I[d][d] = 1.0;
-  }
-  MathExtra::invert3(I, inverse);
-  MathExtra::matvec(inverse, moment, omega);
-}
-
-/* ----------------------------------------------------------------------
    forces that the input gives
 ------------------------------------------------------------------------- */
 
@@ -316,8 +287,8 @@ double FixMPMRigid::stable_dt(tagint &tag) const
     h = std::min(h, field->lattice.h);
     every = field->options.every;
   }
-  const double of_flow = spacing_of_flow();
-  if (of_flow > 0.0) h = of_flow;
+  const double flow_spacing = spacing_of_flow();
+  if (flow_spacing > 0.0) h = flow_spacing;
   return h / (speed() * every);
 }
 
@@ -332,8 +303,9 @@ double FixMPMRigid::spacing_of_flow() const
 }
 
 /* ----------------------------------------------------------------------
-   A body touches material where nodes are inside of it at the start of a step. One that crosses more
-   than a cell in a step can pass through a body without touching it. All ranks have the same motion.
+   A body touches material where nodes are inside of it at the start of a step. One that crosses
+   more than a cell in a step can pass through a body without touching it. All ranks have the same
+   motion.
 ------------------------------------------------------------------------- */
 
 void FixMPMRigid::check_motion(double dt) const
@@ -438,114 +410,129 @@ void FixMPMRigid::Contact::relative_velocity(const double *u, double *w) const
 void FixMPMRigid::solve()
 {
   constexpr int MAX_ROUNDS = 30;
+  double u[6];
+  for (int round = 1;; round++) {
+    solve_system(u);
+    const int changed = decide_contacts(u);
+    int changed_all;
+    MPI_Allreduce(&changed, &changed_all, 1, MPI_INT, MPI_MAX, world);
+    if (!changed_all || round == MAX_ROUNDS) break;
+  }
+  push_nodes(u);
+  push(impulse);
+}
+
+/** Finds the velocity and angular velocity u of the body, for contacts in their present states. */
+void FixMPMRigid::solve_system(double *u) const
+{
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   double I[3][3];
   inertia(I);
-
-  for (int round = 0; round < MAX_ROUNDS; round++) {
-    double mine[42] = {0.0}, all[42];    // matrix, right-hand side
-    for (const auto &c : contacts) {
-      if (!c.owned || c.state == Contact::APART) continue;
-      const double m = c.record[3];
-      // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x it
-      const int products = c.state == Contact::STICKS ? 3 : 1;
-      for (int k = 0; k < products; k++) {
-        double row[6], column[6];
-        for (int d = 0; d < 3; d++) {
-          row[d] = c.state == Contact::STICKS ? (double) (d == k) : c.n[d];
-          column[d] = c.state == Contact::STICKS ? row[d] : c.n[d] + c.pull[d];
-        }
-        MathExtra::cross3(c.r, row, row + 3);
-        MathExtra::cross3(c.r, column, column + 3);
-        const double known = m * MathExtra::dot3(row, c.v);
-        for (int i = 0; i < 6; i++) {
-          for (int j = 0; j < 6; j++) mine[6 * i + j] += m * column[i] * row[j];
-          mine[36 + i] += known * column[i];
-        }
+  double mine[42] = {0.0}, all[42];    // matrix, right-hand side
+  for (const auto &c : contacts) {
+    if (!c.owned || c.state == Contact::APART) continue;
+    const double m = c.record[3];
+    // N_i as sum of products of a direction of the impulse and one of the velocity: each with r x
+    // it
+    const int products = c.state == Contact::STICKS ? 3 : 1;
+    for (int k = 0; k < products; k++) {
+      double row[6], column[6];
+      for (int d = 0; d < 3; d++) {
+        row[d] = c.state == Contact::STICKS ? (double) (d == k) : c.n[d];
+        column[d] = c.state == Contact::STICKS ? row[d] : c.n[d] + c.pull[d];
+      }
+      MathExtra::cross3(c.r, row, row + 3);
+      MathExtra::cross3(c.r, column, column + 3);
+      const double known = m * MathExtra::dot3(row, c.v);
+      for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) mine[6 * i + j] += m * column[i] * row[j];
+        mine[36 + i] += known * column[i];
       }
     }
-    MPI_Allreduce(mine, all, 42, MPI_DOUBLE, MPI_SUM, world);
-    Matrix6 A = Eigen::Map<Matrix6>(all).transpose();    // by rows
-    Vector6 b = Eigen::Map<Vector6>(all + 36);
-    for (int d = 0; d < 3; d++) {
-      A(d, d) += mass;
-      b(d) += mass * v[d];
-      b(3 + d) += L[d];
-      for (int e = 0; e < 3; e++) A(3 + d, 3 + e) += I[d][e];
-    }
-    for (int i = 0; i < 6; i++) {
-      if (!fixed[i]) continue;
-      A.row(i).setZero();
-      A.col(i).setZero();
-      A(i, i) = 1.0;
-      b(i) = 0.0;
-    }
-    const Vector6 u = A.partialPivLu().solve(b);
-
-    // does the solution agree with what it assumed?
-
-    int changed = 0, changed_all;
-    for (auto &c : contacts) {
-      if (kind == STICK) break;
-      double w[3], slide[3];
-      c.relative_velocity(u.data(), w);
-      const double normal = MathExtra::dot3(w, c.n);
-      MathExtra::scaleadd3(-normal, c.n, w, slide);
-      const double held = friction * (1.0 - c.of_water);    // by what is between grains and body
-      const double length = MathExtra::len3(slide), most = held * fabs(normal);
-      const Contact before = c;
-      MathExtra::zero3(c.pull);
-      if (kind == SEPARATE && !(normal > 0.0))
-        c.state = Contact::APART;
-      else if (friction > 0.0 && length <= most)
-        c.state = Contact::STICKS;
-      else {
-        c.state = Contact::SLIDES;
-        if (friction > 0.0)
-          for (int d = 0; d < 3; d++) c.pull[d] = std::copysign(held, normal) * slide[d] / length;
-      }
-      if (c.state != before.state) changed = 1;
-      for (int d = 0; d < 3; d++)
-        if (fabs(c.pull[d] - before.pull[d]) > 1.0e-10 * friction) changed = 1;
-    }
-    MPI_Allreduce(&changed, &changed_all, 1, MPI_INT, MPI_MAX, world);
-    if (changed_all && round + 1 < MAX_ROUNDS) continue;
-
-    // The impulses themselves, with the friction of the last round, and their sum to the body: opposite
-    // to round-off even if the rounds have not converged
-
-    double sum[6] = {0.0};
-    for (const auto &c : contacts) {
-      if (c.state == Contact::APART) continue;
-      double w[3], push[3], moment[3];
-      c.relative_velocity(u.data(), w);
-      const double m = c.record[3], normal = MathExtra::dot3(w, c.n);
-      for (int d = 0; d < 3; d++)
-        push[d] = m * (c.state == Contact::STICKS ? w[d] : normal * (c.n[d] + c.pull[d]));
-      MathExtra::cross3(c.r, push, moment);
-      if (c.owned)
-        for (int d = 0; d < 3; d++) {
-          sum[d] -= push[d];
-          sum[3 + d] -= moment[d];
-        }
-      c.field->ledger.push_node(c.record, c.owned, push);
-      if (heating && c.state == Contact::SLIDES) heat_node(c, m * normal, u.data());
-    }
-    MPI_Allreduce(sum, impulse, 6, MPI_DOUBLE, MPI_SUM, world);
-    for (int d = 0; d < 3; d++) {
-      if (!fixed[d]) v[d] += impulse[d] / mass;
-      if (!fixed[3 + d]) L[d] += impulse[3 + d];
-    }
-    return;
   }
+  MPI_Allreduce(mine, all, 42, MPI_DOUBLE, MPI_SUM, world);
+  Matrix6 A = Eigen::Map<Matrix6>(all).transpose();    // by rows
+  Vector6 b = Eigen::Map<Vector6>(all + 36);
+  for (int d = 0; d < 3; d++) {
+    A(d, d) += mass;
+    b(d) += mass * v[d];
+    b(3 + d) += L[d];
+    for (int e = 0; e < 3; e++) A(3 + d, 3 + e) += I[d][e];
+  }
+  for (int i = 0; i < 6; i++) {
+    if (!fixed[i]) continue;
+    A.row(i).setZero();
+    A.col(i).setZero();
+    A(i, i) = 1.0;
+    b(i) = 0.0;
+  }
+  const Vector6 solution = A.partialPivLu().solve(b);
+  std::copy_n(solution.data(), 6, u);
+}
+
+/** Finds the states of contacts with the motion u of the body. Returns whether these are not the
+ *  states of which u is the solution. */
+bool FixMPMRigid::decide_contacts(const double *u)
+{
+  bool changed = false;
+  for (auto &c : contacts) {
+    if (kind == STICK) break;
+    double w[3], slide[3];
+    c.relative_velocity(u, w);
+    const double normal = MathExtra::dot3(w, c.n);
+    MathExtra::scaleadd3(-normal, c.n, w, slide);
+    const double held = friction * (1.0 - c.water_share);    // by what is between grains and body
+    const double length = MathExtra::len3(slide);
+    const Contact before = c;
+    MathExtra::zero3(c.pull);
+    if (kind == SEPARATE && !(normal > 0.0))
+      c.state = Contact::APART;
+    else if (friction > 0.0 && !CoulombFriction{held, held}.slides(length, fabs(normal)))
+      c.state = Contact::STICKS;
+    else {
+      c.state = Contact::SLIDES;
+      if (friction > 0.0)
+        for (int d = 0; d < 3; d++) c.pull[d] = std::copysign(held, normal) * slide[d] / length;
+    }
+    if (c.state != before.state) changed = true;
+    for (int d = 0; d < 3; d++)
+      if (fabs(c.pull[d] - before.pull[d]) > 1.0e-10 * friction) changed = true;
+  }
+  return changed;
+}
+
+/** Applies the impulses to nodes, with the friction of the last round, and finds their sum on the
+ *  body: opposite to round-off even if the rounds have not converged. */
+void FixMPMRigid::push_nodes(const double *u)
+{
+  double sum[6] = {0.0};
+  for (const auto &c : contacts) {
+    if (c.state == Contact::APART) continue;
+    double w[3], J[3], torque[3];
+    c.relative_velocity(u, w);
+    const double m = c.record[3], normal = MathExtra::dot3(w, c.n);
+    for (int d = 0; d < 3; d++)
+      J[d] = m * (c.state == Contact::STICKS ? w[d] : normal * (c.n[d] + c.pull[d]));
+    MathExtra::cross3(c.r, J, torque);
+    if (c.owned)
+      for (int d = 0; d < 3; d++) {
+        sum[d] -= J[d];
+        sum[3 + d] -= torque[d];
+      }
+    c.field->ledger.push_node(c.record, c.owned, J);
+    if (heating && c.state == Contact::SLIDES) heat_node(c, m * normal, u);
+  }
+  MPI_Allreduce(sum, impulse, 6, MPI_DOUBLE, MPI_SUM, world);
 }
 
 /* ----------------------------------------------------------------------
-   Water in pores bears a part of what pushes the body. Nodes outside of it are free, so that soil within a cell of its surface is
-   pressed together by more than the load where nodes are off that, grains and water alike. So the share is that in what crosses a
-   layer below it: with w = 1 next to the surface, and falling to 0 across the layer, minus the forces of points on nodes have the
-   sum w_i f_i = -int sigma grad w dV, the mean of the stress across the layer. What crosses it is what the body bears.
+   Water in pores takes a part of what pushes the body. Nodes outside of it are free, so that soil
+   within a cell of its surface is pressed together by more than the load where nodes are off that,
+   grains and water alike. So the share is that in what crosses a layer below it: with w = 1 next to
+   the surface, and falling to 0 across the layer, minus the forces of points on nodes have the sum
+   w_i f_i = -int sigma grad w dV, the mean of the stress across the layer. What crosses it acts on
+   the body.
 ------------------------------------------------------------------------- */
 
 static constexpr double PATCH = 2.5;    // radius of sums along the surface, in node spacings
@@ -556,7 +543,7 @@ void FixMPMRigid::find_water()
   const auto pores = find_fixes<MPMPorePressure>(lmp);
   if (pores.empty()) return;
   std::vector<MPMPatchSums::Place> places;
-  std::vector<double> of_water, of_all;
+  std::vector<double> by_water, by_all;
   double h = 0.0;
   int part = -1;
   for (auto *field : MPMField::all(lmp)) {
@@ -574,13 +561,13 @@ void FixMPMRigid::find_water()
       nearest_image(*domain, at);
       near[slot] = MathExtra::len3(at) <= farthest + reach + 1.8 * half;
     }
-    pores[0]->find_forces_below_surface(*field, near, of_water, of_all);
+    pores[0]->find_forces_below_surface(*field, near, by_water, by_all);
     for (std::size_t slot = 0; slot < near.size(); slot++)
       for (int n = 0; near[slot] && n < NODES_PER_BLOCK; n++) {
         const auto &block = grid.blocks[slot];
         if ((block.alias >> n & 1) || !(block.owned >> n & 1)) continue;
         const int64_t node = (int64_t) slot * NODES_PER_BLOCK + n;
-        const double *const of[2] = {&of_water[3 * node], &of_all[3 * node]};
+        const double *const of[2] = {&by_water[3 * node], &by_all[3 * node]};
         if (!(MathExtra::lensq3(of[1]) > 0.0)) continue;
         MPMPatchSums::Place place;
         grid.node_position(node, place.at);
@@ -607,7 +594,7 @@ void FixMPMRigid::find_water()
     double at[3];
     MathExtra::scaleadd3(c.depth, c.n, c.r, at);
     const auto [water, all] = sums.around(c.place, at, c.n);
-    c.of_water = all > 0.0 ? std::min(1.0, water / all) : water > 0.0 ? 1.0 : 0.0;
+    c.water_share = all > 0.0 ? std::min(1.0, water / all) : water > 0.0 ? 1.0 : 0.0;
   }
 }
 
@@ -622,8 +609,8 @@ double FixMPMRigid::distance(const double *at, double far) const
 }
 
 /* ----------------------------------------------------------------------
-   heat of friction at a node that slides, and the work that goes with it, which the ledger has with the new
-   velocity; u: velocity and angular velocity of the body after the contact
+   heat of friction at a node that slides, and the work that goes with it, which the ledger has with
+   the new velocity; u: velocity and angular velocity of the body after the contact
 ------------------------------------------------------------------------- */
 
 void FixMPMRigid::heat_node(const Contact &c, double normal_impulse, const double *u)
@@ -645,39 +632,6 @@ void FixMPMRigid::heat_node(const Contact &c, double normal_impulse, const doubl
   c.field->ledger.transfer -= more;
 }
 
-/* ----------------------------------------------------------------------
-   center and orientation to the end of the step: rotation by the angular velocity at its middle,
-   which keeps the angular momentum
-------------------------------------------------------------------------- */
-
-static void rotate(const double *angle, const double from[3][3], double to[3][3])
-{
-  const double size = MathExtra::len3(angle);
-  double R[3][3];
-  const double s = size > 1.0e-8 ? sin(size) / size : 1.0;
-  const double c = size > 1.0e-8 ? (1.0 - cos(size)) / (size * size) : 0.5;
-  const double K[3][3] = {
-      {0.0, -angle[2], angle[1]}, {angle[2], 0.0, -angle[0]}, {-angle[1], angle[0], 0.0}};
-  double KK[3][3];
-  MathExtra::times3(K, K, KK);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) R[i][j] = (i == j) + s * K[i][j] + c * KK[i][j];
-  MathExtra::times3(R, from, to);
-}
-
-void FixMPMRigid::move(double dt)
-{
-  double start[3][3], angle[3];
-  memcpy(start, Q, sizeof(Q));
-  for (const double share : {0.5, 0.5, 0.5, 1.0}) {    // three rounds find the middle of the step
-    spin();
-    MathExtra::scale3(share * dt, omega, angle);
-    rotate(angle, start, Q);
-  }
-  spin();
-  for (int d = 0; d < 3; d++) x[d] += dt * v[d];
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixMPMRigid::act(double dt, Stage stage)
@@ -693,8 +647,9 @@ void FixMPMRigid::act(double dt, Stage stage)
     solve();
     move(dt);
 
-    // The nodes were counted with the new velocity of the body. Impulses on it change its kinetic energy with the mean of both: see
-    // MPMWallMotion::half_change(). The sum is the same on all ranks
+    // The nodes were counted with the new velocity of the body. Impulses on it change its kinetic
+    // energy with the mean of both: see MPMWallMotion::half_change(). The sum is the same on
+    // all ranks
 
     double faster = 0.0;
     for (int d = 0; d < 3; d++)
@@ -718,15 +673,6 @@ void FixMPMRigid::act(double dt, Stage stage)
     for (int d = 0; d < 3; d++) w[d] += v[d] - c.record[d];
     const double normal = MathExtra::dot3(w, c.n);
     for (int d = 0; d < 3; d++) c.record[d] += kind == STICK ? w[d] : normal * c.n[d];
-  }
-}
-
-/** Nothing moves along what is held. */
-void FixMPMRigid::hold()
-{
-  for (int d = 0; d < 3; d++) {
-    if (fixed[d]) v[d] = 0.0;
-    if (fixed[3 + d]) L[d] = 0.0;
   }
 }
 
@@ -758,16 +704,7 @@ void FixMPMRigid::predict(double duration, double *u, double *inverse)
   spin();
   MathExtra::copy3(v, u);
   MathExtra::copy3(omega, u + 3);
-  std::fill_n(inverse, 36, 0.0);
-  for (int d = 0; d < 3; d++) {
-    if (!fixed[d]) inverse[7 * d] = 1.0 / mass;
-    if (fixed[3 + d]) continue;
-    double unit[3] = {0.0, 0.0, 0.0};
-    unit[d] = 1.0;
-    MathExtra::copy3(unit, L);
-    spin();
-    for (int e = 0; e < 3; e++) inverse[6 * (3 + e) + 3 + d] = omega[e];
-  }
+  find_mobility(inverse);
   static_cast<MPMRigidMotion &>(*this) = before;
 }
 
@@ -777,10 +714,7 @@ void FixMPMRigid::go_on(double dt, const double *impulse_of_flow)
   std::copy_n(impulse_of_flow, 6, impulse);
   load_impulse(dt);
   hold();
-  for (int d = 0; d < 3; d++) {
-    if (!fixed[d]) v[d] += impulse[d] / mass;
-    if (!fixed[3 + d]) L[d] += impulse[3 + d];
-  }
+  push(impulse);
   move(dt);
   check_motion(dt);
 }

@@ -16,6 +16,7 @@ FixStyle(mpm/rigid,FixMPMRigid);
 #define LMP_FIX_MPM_RIGID_H
 
 #include "base/mpm_step_limit.h"
+#include "contact/mpm_rigid_body.h"
 #include "declare/option.h"
 #include "field/mpm_friction_heat.h"
 #include "field/mpm_node_action.h"
@@ -34,19 +35,9 @@ class SurfaceMesh;
 namespace LAMMPS_NS {
 class MPMField;
 
-/** State of a rigid body, as kept in restart files. */
-struct MPMRigidMotion {
-  double x[3], v[3], L[3];       ///< center, its velocity, angular momentum
-  double Q[3][3];                ///< rotation from the frame of the mesh to space
-  double omega[3];               ///< angular velocity
-  double impulse[6], dt_last;    ///< of the material on the body in the last step
-};
-
 /** Options; v and omega of MPMRigidMotion are the initial values. */
-struct MPMRigidOptions : MPMRigidMotion {
+struct MPMRigidOptions : MPMRigidBody {
   enum Kind { STICK, SLIP, SEPARATE };
-
-  MPMRigidOptions() : MPMRigidMotion() {}
 
   std::string region_id;
   bool by_mass = false;
@@ -54,19 +45,20 @@ struct MPMRigidOptions : MPMRigidMotion {
   Kind kind = STICK;
   double friction = 0.0;
   double gravity[3] = {0.0, 0.0, 0.0};
-  MPM_NS::NumberOrVariable load[3], moment[3];                   ///< force and torque
-  bool fixed[6] = {false, false, false, false, false, false};    ///< velocities that stay zero
+  MPM_NS::NumberOrVariable load[3], moment[3];    ///< force and torque
   MPMFrictionHeatOptions heat;
 
   MPM_NS::Options declare();
 };
 
 /** A free rigid body with the shape of a region mpm/mesh, in contact with the material at the nodes
- *  inside of it. Body and nodes get opposite impulses, which are solved for together, so that light bodies
- *  are as stable as heavy ones, and momentum and angular momentum are conserved to round-off.
+ *  inside of it. Body and nodes get opposite impulses, which are solved for together, so that light
+ *  bodies are as stable as heavy ones, and momentum and angular momentum are conserved to
+ *  round-off.
  *
- *  In a flow of fix mpm/incompressible for which its region is solid, any bounded region can be the shape, also in 2d.
- *  That fix then moves the body together with the pressure, see MPMFlowBodies. */
+ *  In a flow of fix mpm/incompressible for which its region is solid, any bounded region can be the
+ *  shape, also in 2d. That fix then moves the body together with the pressure, see
+ *  MPMFlowBodies. */
 class FixMPMRigid :
     public Fix,
     public MPMNodeAction,
@@ -89,7 +81,8 @@ class FixMPMRigid :
   bool decides_contact(const MPMField &) const override { return kind == SEPARATE; }
   void act(double dt, Stage) override;
 
-  /** Signed distance of x from the surface, negative inside; far if it is larger. Not for bodies in a flow. */
+  /** Signed distance of x from the surface, negative inside; far if it is larger. Not for bodies in
+   *  a flow. */
   double distance(const double *x, double far) const;
   /** Largest time step in which no point of the body crosses a cell. tag: 0. */
   double stable_dt(tagint &tag) const override;
@@ -105,8 +98,8 @@ class FixMPMRigid :
   void place_in_region(const double *x, double *place) const;
   /** Rotates a vector n from the frame of the region to space. */
   void turn_to_space(const double *n, double *turned) const { MathExtra::matvec(Q, n, turned); }
-  /** Finds velocity and angular velocity u[6] after loads of this duration, and inverse [6][6], their change by an impulse
-   *  and its moment about the center. Does not change the body. */
+  /** Finds velocity and angular velocity u[6] after loads of this duration, and inverse [6][6],
+   *  their change by an impulse and its moment about the center. Does not change the body. */
   void predict(double duration, double *u, double *inverse);
   /** Moves the body by a step with its loads and this impulse and moment [6] of the flow. */
   void go_on(double dt, const double *impulse_of_flow);
@@ -119,21 +112,20 @@ class FixMPMRigid :
     double *record;    // node record: velocity and mass
     bool owned;
     State state;
-    double r[3];              // from the center of the body
-    double n[3] = {};         // normal out of the body, unless nodes just stick
-    double depth = 0.0;       // below the surface of the body
-    double of_water = 0.0;    // share of the impulse along n that pore water bears
-    double v[3];              // velocity before contact
-    double pull[3] = {};      // impulse of friction on the node, for an impulse of 1 along n
+    double r[3];                 // from the center of the body
+    double n[3] = {};            // normal out of the body, unless nodes just stick
+    double depth = 0.0;          // below the surface of the body
+    double water_share = 0.0;    // share of the impulse along n that pore water takes
+    double v[3];                 // velocity before contact
+    double pull[3] = {};         // impulse of friction on the node, for an impulse of 1 along n
 
-    /** Velocity w of the body at the node, relative to v. u: velocity and angular velocity of the body. */
+    /** Velocity w of the body at the node, relative to v. u: velocity and angular velocity of the
+     *  body. */
     void relative_velocity(const double *u, double *w) const;
   };
 
   const MPM_NS::SurfaceMesh *mesh = nullptr;    // null: the region is of another style, in a flow
   double first[3], farthest;    // center of the body in the region; largest distance from it
-  double mass;
-  double body_inertia[3][3];    // about the center, in the frame of the region
   std::vector<Contact> contacts;
   std::unique_ptr<MPMFrictionHeat> heating;    // null: not requested
 
@@ -142,15 +134,14 @@ class FixMPMRigid :
   bool find_normal(const std::array<double, 3> &, Contact &) const;
   void place_in_body(const double *r, std::array<double, 3> &) const;
   void solve();
+  void solve_system(double *u) const;
+  bool decide_contacts(const double *u);
+  void push_nodes(const double *u);
   void find_water();
   void heat_node(const Contact &, double normal_impulse, const double *u);
-  void move(double dt);
   double speed() const;
   double spacing_of_flow() const;
-  void hold();
   void check_motion(double dt) const;
-  void inertia(double out[3][3]) const;
-  void spin();
 };
 
 }    // namespace LAMMPS_NS

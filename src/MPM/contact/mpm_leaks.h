@@ -17,8 +17,8 @@ namespace LAMMPS_NS {
 class MPMField;
 class FixMPMMaterial;
 
-/** Nodes inside of impermeable material at which points of other materials meet from both sides: what these
- *  exchange at the nodes leaks through the material. */
+/** Nodes inside of impermeable material at which points of other materials meet from both sides:
+ *  what these exchange at the nodes leaks through the material. */
 struct MPMLeaks {
   int64_t nodes = 0;
   double first[3];    ///< place of one of them, if there are any

@@ -24,10 +24,12 @@ static constexpr double FREE = 1.0e-12;       // change of a velocity by walls t
 static constexpr double NOTHING = 1.0e-13;    // entry of a column, of its largest
 static constexpr double TIED = 1.0e-14;       // what is left of the approach of bodies that touch
 static constexpr int MOST_ROUNDS = 6;
-// of the diagonal, the first one with which there are factors: walls can make rows depend on each other
+// of the diagonal, the first one with which there are factors: walls can make rows depend on each
+// other
 static constexpr double LIFTS[] = {0.0, 1.0e-13, 1.0e-11, 1.0e-9};
 
-/** Numbers on all ranks of the rows that this one knows, and which of them have nodes on which walls act. Collective. */
+/** Numbers on all ranks of the rows that this one knows, and which of them have nodes on which
+ *  walls act. Collective. */
 void MPMTies::number_rows(std::vector<char> &walled, const std::vector<char> &is_free)
 {
   const int size = contact->rows_of_group();
@@ -53,11 +55,11 @@ void MPMTies::number_rows(std::vector<char> &walled, const std::vector<char> &is
   std::vector<int> keys(begins.back() + counts.back());
   MPI_Allgatherv(mine.data(), count, MPI_INT, keys.data(), counts.data(), begins.data(), MPI_INT,
                  world);
-  const int ngroups_of_all = (int) keys.size() / (NKEY + 1);
-  all = ngroups_of_all * size;
+  const int ngroups_everywhere = (int) keys.size() / (NKEY + 1);
+  all = ngroups_everywhere * size;
   walled.assign(all, 0);
   std::map<Key, int> numbers;
-  for (int g = 0; g < ngroups_of_all; g++) {
+  for (int g = 0; g < ngroups_everywhere; g++) {
     const int *const from = &keys[(std::size_t) g * (NKEY + 1)];
     Key key;
     std::copy_n(from, NKEY, key.begin());
@@ -77,7 +79,8 @@ void MPMTies::begin(MPMBodyContact &of, const std::vector<double> &mass, int wid
   with_acts = acts;
   const std::size_t n = mass.size() * width;
 
-  // where walls leave a motion that is no special one as it is, they also do nothing with one that is there alone, as P_w is symmetric
+  // where walls leave a motion that is no special one as it is, they also do nothing with one that
+  // is there alone, as P_w is symmetric
 
   std::vector<char> is_free(n, 1), walled;
   if (has_walls) {
@@ -194,7 +197,7 @@ void MPMTies::close(double *v)
     contact->find_approach(v, true, rows.data());
     double part[2], squares[2];
     contact->add_squares(rows.data(), round == 0 ? v : nullptr, part);
-    sum_in_order(lmp, 2, part, of_ranks, squares);
+    sum_in_order(lmp, 2, part, gathered, squares);
     if (round == 0) enough = TIED * TIED * squares[1];
     // rounding errors are all that is left
     if (!(squares[0] > enough) || (round > 1 && squares[0] > 0.5 * before)) return;
@@ -209,8 +212,8 @@ void MPMTies::close(double *v)
     factors.solve(sums.data(), impulse.data());
     for (int number = 0; number < all; number++) {
       if (place[number] < 0) continue;
-      const double of_row = impulse[place[number]];
-      for (const Entry &entry : columns[number]) v[entry.k] -= of_row * entry.value;
+      const double row_impulse = impulse[place[number]];
+      for (const Entry &entry : columns[number]) v[entry.k] -= row_impulse * entry.value;
     }
     std::fill(rows.begin(), rows.end(), 0.0);
     for (std::size_t row = 0; row < rows.size(); row++)

@@ -20,9 +20,9 @@
 #include "field/mpm_frame.h"
 #include "force.h"
 #include "material/material.h"
+#include "math/coulomb.h"
 #include "math_const.h"
 #include "math_extra.h"
-#include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -30,31 +30,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int NOTHING = -1;    // field of an atom that is no point
-
-/* ---------------------------------------------------------------------- */
-
-PairMPMPenalty::PairMPMPenalty(LAMMPS *lmp) : Pair(lmp)
-{
-  single_enable = 0;
-  nextra = 2;
-  pvector = new double[nextra]();
-}
-
-PairMPMPenalty::~PairMPMPenalty()
-{
-  if (copymode) return;
-  delete[] pvector;
-  if (allocated) {
-    memory->destroy(setflag);
-    memory->destroy(cutsq);
-  }
-}
 
 /* ---------------------------------------------------------------------- */
 
@@ -109,7 +89,7 @@ void PairMPMPenalty::compute(int eflag, int vflag)
       if (c.friction > 0.0) {
         MathExtra::scaleadd3(-un, n, u, u);
         const double slip = MathExtra::len3(u);
-        const double drag = c.friction * normal / std::max(slip, c.slip);
+        const double drag = CoulombFriction{c.friction}.drag(slip, normal, c.slip);
         MathExtra::scale3(-drag, u, force_i);
         power += drag * slip * slip;
       }
@@ -264,7 +244,8 @@ double PairMPMPenalty::current_radius(int i)
   return rings ? std::min(now, growth * (1.0 + 1e-10) * largest[atom->type[i]]) : now;
 }
 
-/** As in MPMFrictionHeat, with the mean conductivity along all axes; 0: its material does not conduct. */
+/** As in MPMFrictionHeat, with the mean conductivity along all axes; 0: its material does not
+ *  conduct. */
 double PairMPMPenalty::effusivity_of(int i) const
 {
   const int field = field_of(i);
@@ -340,26 +321,6 @@ void PairMPMPenalty::settings(int narg, char **arg)
 
 /* ---------------------------------------------------------------------- */
 
-void PairMPMPenalty::allocate()
-{
-  allocated = 1;
-  const int n = atom->ntypes + 1;
-  memory->create(setflag, n, n, "pair:setflag");
-  memory->create(cutsq, n, n, "pair:cutsq");
-  memset(&setflag[0][0], 0, n * n * sizeof(int));
-  memset(&cutsq[0][0], 0, n * n * sizeof(double));
-  coeffs.assign(n * n, Coeff());
-
-  // points of one body do not interact, so that these need not be given: init_one() knows better
-
-  for (int i = 1; i < n; i++) setflag[i][i] = 1;
-}
-
-PairMPMPenalty::Coeff &PairMPMPenalty::coeff_of(int i, int j)
-{
-  return coeffs[std::min(i, j) * (atom->ntypes + 1) + std::max(i, j)];
-}
-
 /* ----------------------------------------------------------------------
    pair_coeff I J modulus keyword values ...
 ------------------------------------------------------------------------- */
@@ -378,28 +339,6 @@ Options MPMPenaltyCoeff::declare()
         {number(damping, "zeta", NOT_NEGATIVE, "1",
                 "damping of a contact between two points, 1 = critical")});
   return o;
-}
-
-void PairMPMPenalty::coeff(int narg, char **arg)
-{
-  if (narg < 3) utils::missing_cmd_args(FLERR, "pair_coeff mpm/penalty", error);
-  if (!allocated) allocate();
-  int ilo, ihi, jlo, jhi;
-  utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
-  utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
-  Coeff c;
-  Options options = c.declare();
-  read_options(lmp, options, narg, arg, 2);
-  c.set = 1;
-
-  int count = 0;
-  for (int i = ilo; i <= ihi; i++)
-    for (int j = std::max(jlo, i); j <= jhi; j++) {
-      coeff_of(i, j) = c;
-      setflag[i][j] = 1;
-      count++;
-    }
-  if (count == 0) error->all(FLERR, "Incorrect args for pair_coeff mpm/penalty: no types I <= J");
 }
 
 /* ----------------------------------------------------------------------
@@ -497,24 +436,6 @@ double PairMPMPenalty::init_one(int i, int j)
    restart
 ------------------------------------------------------------------------- */
 
-void PairMPMPenalty::write_restart(FILE *fp)
-{
-  write_restart_settings(fp);
-  fwrite(coeffs.data(), sizeof(Coeff), coeffs.size(), fp);
-}
-
-void PairMPMPenalty::read_restart(FILE *fp)
-{
-  read_restart_settings(fp);
-  allocate();
-  if (comm->me == 0)
-    utils::sfread(FLERR, coeffs.data(), sizeof(Coeff), coeffs.size(), fp, nullptr, error);
-  MPI_Bcast(coeffs.data(), (int) (coeffs.size() * sizeof(Coeff)), MPI_BYTE, 0, world);
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++)
-      if (coeff_of(i, j).set) setflag[i][j] = 1;
-}
-
 void PairMPMPenalty::write_restart_settings(FILE *fp)
 {
   fwrite(&growth, sizeof(double), 1, fp);
@@ -530,8 +451,8 @@ void PairMPMPenalty::read_restart_settings(FILE *fp)
 
 double PairMPMPenalty::memory_usage()
 {
-  return Pair::memory_usage() +
+  return MPMPair::memory_usage() +
       (radius.capacity() + mass.capacity() + effusivity.capacity() + heat.capacity()) *
       sizeof(double) +
-      pairs.capacity() * sizeof(pairs[0]) + near.capacity() * sizeof(int);
+      near.capacity() * sizeof(int);
 }

@@ -15,8 +15,8 @@ PairStyle(mpm/penalty,PairMPMPenalty);
 #ifndef LMP_PAIR_MPM_PENALTY_H
 #define LMP_PAIR_MPM_PENALTY_H
 
+#include "base/mpm_pair.h"
 #include "declare/option.h"
-#include "pair.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -47,22 +47,20 @@ struct MPMPenaltyCoeff {
 
 /** Contact between points of different fields (fix mpm), whatever their lattices.
  *
- *  Points are spheres (2d: disks) whose diameter is the spacing of points according to their present volume.
- *  Two spheres that overlap by delta repel each other along the line of their centers with F = E A delta/(r_i
- *  + r_j), where A is the face of the smaller one. Aligned faces feel the pressure E delta/spacing, as if a
- *  layer of material of modulus E were between the outermost points. With an axis of symmetry, all of this is
- *  along the circle that is midway between the two. */
-class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
+ *  Points are spheres (2d: disks) whose diameter is the spacing of points according to their
+ *  present volume. Two spheres that overlap by delta repel each other along the line of their
+ *  centers with F = E A delta/(r_i
+ *  + r_j), where A is the face of the smaller one. Aligned faces feel the pressure E delta/spacing,
+ *  as if a
+ *  layer of material of modulus E were between the outermost points. With an axis of symmetry, all
+ *  of this is along the circle that is midway between the two. */
+class PairMPMPenalty : public MPMPair<MPMPenaltyCoeff>, private MPMPenaltyOptions {
  public:
-  PairMPMPenalty(class LAMMPS *);
-  ~PairMPMPenalty() override;
+  PairMPMPenalty(class LAMMPS *lmp) : MPMPair(lmp, "mpm/penalty") {}
   void compute(int, int) override;
   void settings(int, char **) override;
-  void coeff(int, char **) override;
   void init_style() override;
   double init_one(int, int) override;
-  void write_restart(FILE *) override;
-  void read_restart(FILE *) override;
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
@@ -85,8 +83,8 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
              return c.damping > 0.0;
            });
   }
-  /** Call at init(), after that of this style: the dissipated energy becomes heat of the points, for fix
-   *  mpm/heat. */
+  /** Call at init(), after that of this style: the dissipated energy becomes heat of the points,
+   *  for fix mpm/heat. */
   void make_heat() { heats = true; }
   /** Power of this heat for a point of this rank, from the forces of the step. */
   double heating(int i) const { return i < (int) heat.size() ? heat[i] : 0.0; }
@@ -95,7 +93,6 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
   using Coeff = MPMPenaltyCoeff;
 
   MPMPoints *points = nullptr;
-  std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<MPMField *> fields;
   std::vector<char> coupled;          // [field][field] same field, or contact by fix mpm/contact
   std::vector<char> present;          // [field][type]
@@ -109,19 +106,18 @@ class PairMPMPenalty : public Pair, private MPMPenaltyOptions {
 
   bool heats = false;    // does dissipated energy become heat of the points?
 
-  std::vector<double> radius, mass;          // current, [nmax]; mass with damping only
-  std::vector<double> effusivity, heat;      // [nmax] with heat only; 0: does not conduct; power
-  std::vector<std::pair<int, int>> pairs;    // of points of different fields in reach of each other
-  std::vector<int> near;                     // local points in these pairs
+  std::vector<double> radius, mass;        // current, [nmax]; mass with damping only
+  std::vector<double> effusivity, heat;    // [nmax] with heat only; 0: does not conduct; power
+  std::vector<int> near;                   // local points in these pairs
 
-  void allocate();
   void find_pairs();
   void warn_about_list(double same, double all);
   int field_of(int i) const;
   double initial_radius(int i) const;
   double current_radius(int i);
   double effusivity_of(int i) const;
-  Coeff &coeff_of(int i, int j);
+  // points of one body do not interact, so that these need not be given: init_one() knows better
+  bool needs_own_type() const override { return false; }
 };
 
 }    // namespace LAMMPS_NS

@@ -16,7 +16,6 @@
 #include "error.h"
 #include "force.h"
 #include "math_extra.h"
-#include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -24,7 +23,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -34,25 +32,6 @@ using namespace MPM_NS;
 static constexpr double NEAR = 2.0;
 // nodes that are so much closer than the distance may get to the other side
 static constexpr double DEEP = 0.5;
-
-/* ---------------------------------------------------------------------- */
-
-PairMPMSheet::PairMPMSheet(LAMMPS *lmp) : Pair(lmp)
-{
-  single_enable = 0;
-  nextra = 2;
-  pvector = new double[nextra]();
-}
-
-PairMPMSheet::~PairMPMSheet()
-{
-  if (copymode) return;
-  delete[] pvector;
-  if (allocated) {
-    memory->destroy(setflag);
-    memory->destroy(cutsq);
-  }
-}
 
 /* ---------------------------------------------------------------------- */
 
@@ -410,22 +389,6 @@ void PairMPMSheet::settings(int narg, char **arg)
   read_options(lmp, options, narg, arg, 0);
 }
 
-void PairMPMSheet::allocate()
-{
-  allocated = 1;
-  const int n = atom->ntypes + 1;
-  memory->create(setflag, n, n, "pair:setflag");
-  memory->create(cutsq, n, n, "pair:cutsq");
-  memset(&setflag[0][0], 0, n * n * sizeof(int));
-  memset(&cutsq[0][0], 0, n * n * sizeof(double));
-  coeffs.assign(n * n, Coeff());
-}
-
-PairMPMSheet::Coeff &PairMPMSheet::coeff_of(int i, int j)
-{
-  return coeffs[std::min(i, j) * (atom->ntypes + 1) + std::max(i, j)];
-}
-
 /* ----------------------------------------------------------------------
    pair_coeff I J k keyword values ...
 ------------------------------------------------------------------------- */
@@ -439,28 +402,6 @@ Options MPMSheetCoeff::declare()
         {number(damping, "c", NOT_NEGATIVE, "force/velocity",
                 "damping force per velocity at which two nodes approach or separate")});
   return o;
-}
-
-void PairMPMSheet::coeff(int narg, char **arg)
-{
-  if (narg < 3) utils::missing_cmd_args(FLERR, "pair_coeff mpm/sheet", error);
-  if (!allocated) allocate();
-  int ilo, ihi, jlo, jhi;
-  utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);
-  utils::bounds(FLERR, arg[1], 1, atom->ntypes, jlo, jhi, error);
-  Coeff c;
-  Options options = c.declare();
-  read_options(lmp, options, narg, arg, 2);
-  c.set = 1;
-
-  int count = 0;
-  for (int i = ilo; i <= ihi; i++)
-    for (int j = std::max(jlo, i); j <= jhi; j++) {
-      coeff_of(i, j) = c;
-      setflag[i][j] = 1;
-      count++;
-    }
-  if (count == 0) error->all(FLERR, "Incorrect args for pair_coeff mpm/sheet: no types I <= J");
 }
 
 /* ---------------------------------------------------------------------- */
@@ -544,24 +485,6 @@ double PairMPMSheet::init_one(int i, int j)
    restart
 ------------------------------------------------------------------------- */
 
-void PairMPMSheet::write_restart(FILE *fp)
-{
-  write_restart_settings(fp);
-  fwrite(coeffs.data(), sizeof(Coeff), coeffs.size(), fp);
-}
-
-void PairMPMSheet::read_restart(FILE *fp)
-{
-  read_restart_settings(fp);
-  allocate();
-  if (comm->me == 0)
-    utils::sfread(FLERR, coeffs.data(), sizeof(Coeff), coeffs.size(), fp, nullptr, error);
-  MPI_Bcast(coeffs.data(), (int) (coeffs.size() * sizeof(Coeff)), MPI_BYTE, 0, world);
-  for (int i = 1; i <= atom->ntypes; i++)
-    for (int j = i; j <= atom->ntypes; j++)
-      if (coeff_of(i, j).set) setflag[i][j] = 1;
-}
-
 void PairMPMSheet::write_restart_settings(FILE *fp)
 {
   fwrite(&distance, sizeof(double), 1, fp);
@@ -580,8 +503,7 @@ void PairMPMSheet::read_restart_settings(FILE *fp)
 
 double PairMPMSheet::memory_usage()
 {
-  double bytes = Pair::memory_usage() + (double) pairs.capacity() * sizeof(pairs[0]);
-  bytes += passages.memory();
+  double bytes = MPMPair::memory_usage() + passages.memory();
   bytes += (double) seen.capacity() * sizeof(seen[0]) +
       (double) approaches.capacity() * sizeof(approaches[0]);
   for (const auto &body : bodies)

@@ -15,11 +15,11 @@ PairStyle(mpm/sheet,PairMPMSheet);
 #ifndef LMP_PAIR_MPM_SHEET_H
 #define LMP_PAIR_MPM_SHEET_H
 
+#include "base/mpm_pair.h"
 #include "declare/option.h"
 #include "mesh/face_contact.h"
 #include "mesh/near_nodes.h"
 #include "mesh/passages.h"
-#include "pair.h"
 
 #include <cstdint>
 #include <functional>
@@ -55,17 +55,13 @@ struct MPMSheetCoeff {
  *  With faces, nodes touch the triangles of a surface (in 2d its lines) instead of its nodes. A
  *  node has a side of each face that is close. It keeps this side when it passes through the face,
  *  and is pushed back. */
-class PairMPMSheet : public Pair, private MPMSheetOptions {
+class PairMPMSheet : public MPMPair<MPMSheetCoeff>, private MPMSheetOptions {
  public:
-  PairMPMSheet(class LAMMPS *);
-  ~PairMPMSheet() override;
+  PairMPMSheet(class LAMMPS *lmp) : MPMPair(lmp, "mpm/sheet") {}
   void compute(int, int) override;
   void settings(int, char **) override;
-  void coeff(int, char **) override;
   void init_style() override;
   double init_one(int, int) override;
-  void write_restart(FILE *) override;
-  void read_restart(FILE *) override;
   void write_restart_settings(FILE *) override;
   void read_restart_settings(FILE *) override;
   double memory_usage() override;
@@ -103,9 +99,7 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
     bool operator<(const Approach &other) const { return sight < other.sight; }
   };
 
-  std::vector<Coeff> coeffs;    // [ntypes+1][ntypes+1]
   std::vector<Body> bodies;
-  std::vector<std::pair<int, int>> pairs;    // that can touch, from the present neighbor list
   bool starting = true;    // until the first step, for bodies that are not from a restart file
   bool warned_deep = false, warned_dt = false, warned_gap = false, warned_through = false,
        warned_lost = false;
@@ -113,7 +107,6 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
   std::vector<SeenFace> seen;          // all faces of which this rank has the nodes
   std::vector<Approach> approaches;    // sorted: those of an atom are next to each other
 
-  void allocate();
   void find_bodies();
   void find_pairs();
   void warn_about_step();
@@ -134,7 +127,6 @@ class PairMPMSheet : public Pair, private MPMSheetOptions {
   void touch_faces(int eflag);
   std::vector<MPM_NS::Passages::Sight> look_at_faces(std::vector<MPM_NS::Passages::FaceID> &mine);
   int body_of(int i) const;
-  Coeff &coeff_of(int i, int j);
 };
 
 }    // namespace LAMMPS_NS

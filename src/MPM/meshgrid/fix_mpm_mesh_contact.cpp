@@ -7,25 +7,21 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Where two bodies have mass at a node of the mesh and their points touch, impulses are those of fix mpm/contact: equal and
-   opposite, they take the approach away, and of the sliding what the law of friction allows
+   Where two bodies have mass at a node of the mesh and their points touch, impulses are those of
+   fix mpm/contact (MPMNodeContact).
 
-     n from a to b,  m = m_a m_b/(m_a + m_b),  u = v_a - v_b
-     J_n = max(0, m u.n),   J_t = m (u - (u.n) n) scaled down to at most mu J_n
+   Normals are those of the plane that tells the points of both bodies apart best
+   (math/plane_between.h), in the cells around the node. Linear functions reach one cell, so that
+   the gradient of the volume of a body at its corner points along the diagonal, and a block that
+   slides would be stopped by what is below it; the plane between two rows of points is that of the
+   rows, also where one of them ends.
 
-   (S.G. Bardenhagen, J.U. Brackbill, D. Sulsky, Comput. Methods Appl. Mech. Eng. 187 (2000) 529).
+   Gap. The distance of the points along that normal, of those that are farthest ahead, less half of
+   the width of each: the volumes of bodies at a node, by which fix mpm/contact knows whether they
+   touch, are not that of the node where cells and points do not match.
 
-   Normals are those of the plane that tells the points of both bodies apart best (math/plane_between.h), in the cells
-   around the node. Linear functions reach one cell, so that the gradient of the volume of a body at its corner points along
-   the diagonal, and a block that slides would be stopped by what is below it; the plane between two rows of
-   points is that of the rows, also where one of them ends.
-
-   Gap. The distance of the points along that normal, of those that are farthest ahead, less half of the width of each: the volumes
-   of bodies at a node, by which fix mpm/contact knows whether they touch, are not that of the node where cells and points do
-   not match.
-
-   Conditions of the mesh hold all bodies at a node in the same way. Normals and impulses are in the directions that are
-   free, so that contact leaves these conditions as they are.
+   Conditions of the mesh hold all bodies at a node in the same way. Normals and impulses are in the
+   directions that are free, so that contact leaves these conditions as they are.
 ------------------------------------------------------------------------- */
 
 #include "meshgrid/fix_mpm_mesh_contact.h"
@@ -42,7 +38,6 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "force.h"
 #include "group.h"
 #include "modify.h"
 #include "update.h"
@@ -60,11 +55,6 @@ static constexpr double CONVERGED = 1.0e-12;    // change of the impulses, relat
 
 static constexpr double ROUNDING = 1.0e-8;
 
-// bodies that move along each other approach each other or part by rounding, which must not decide whether they
-// stick or are open: at least by this part of their speeds
-
-static constexpr double APPROACH = 1.0e-12;
-
 // points that tell whether bodies touch at a node are not farther beside it, in sizes of the node
 
 static constexpr double BESIDE = 0.5;
@@ -79,26 +69,15 @@ Options MPMMeshContactOptions::declare()
 {
   using namespace option;
   Options o("fix mpm/mesh/contact");
-  o.add("law",
-        {word(law,
-              {{"frictionless", FRICTIONLESS, "bodies slide freely"},
-               {"coulomb",
-                COULOMB,
-                "bodies slide with friction",
-                {number(kinetic_friction, "mu", NOT_NEGATIVE, "1", "coefficient of friction"),
-                 optional(number(static_friction, "mu_s", NOT_NEGATIVE, "1",
-                                 "coefficient of static friction, not below mu; default: mu"))}},
-               {"stick", STICK, "bodies do not slide while they press on each other"}})})
-      .standard("frictionless");
+  declare_law(o, false);
   o.refuse([=] {
-    return OptionRules{
-        {law == COULOMB && static_friction >= 0.0 && static_friction < kinetic_friction, "law",
-         "coulomb: the coefficient of static friction must not be below that of friction: {law}"}};
+    return OptionRules{coefficients()};
   });
   return o;
 }
 
-FixMPMMeshContact::FixMPMMeshContact(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMPMMeshContact::FixMPMMeshContact(LAMMPS *lmp, int narg, char **arg) :
+    Fix(lmp, narg, arg), report(lmp)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -122,11 +101,14 @@ FixMPMMeshContact::FixMPMMeshContact(LAMMPS *lmp, int narg, char **arg) : Fix(lm
   if (groups.size() > MAX_BODIES)
     error->all(FLERR, 4 + MAX_BODIES, "Fix mpm/mesh/contact takes at most {} bodies", MAX_BODIES);
   read_options(lmp, options, narg, arg, iarg);
-  if (static_friction < 0.0) static_friction = kinetic_friction;
+  complete();
+  keeps_rest = true;
+  rounded = 1.0;
+  report.set_bodies(count());
 
   scalar_flag = array_flag = 1;
-  size_array_rows = (int) (groups.size() * (groups.size() - 1) / 2);
-  size_array_cols = 5;
+  size_array_rows = (int) report.entries.size();
+  size_array_cols = MPMContactReport::COLUMNS;
   global_freq = 1;
   extscalar = extarray = 1;
   restart_global = 1;
@@ -148,12 +130,6 @@ int FixMPMMeshContact::body_of(int mask) const
   for (int b = 0; b < count(); b++)
     if (mask & groups[b]) body = body == -1 ? b : -2;
   return body;
-}
-
-/** Row of the output for bodies a < b of n: (0,1), (0,2), ..., (1,2), ... */
-static int pair_index(int a, int b, int n)
-{
-  return a * n - a * (a + 1) / 2 + b - a - 1;
 }
 
 /* ---------------------------------------------------------------------- */
@@ -189,18 +165,18 @@ void FixMPMMeshContact::find(const MPMMeshBodies &of)
   overlap = 0.0;
   for (int a = 0; a < count(); a++)
     for (int b = a + 1; b < count(); b++) {
-      of_row.clear();
+      node_of_row.clear();
       for (const int node : of.ranks.nodes) {
         const bool shared = of.mass[of.stride * (a * nnode + node)] > 0.0 &&
             of.mass[of.stride * (b * nnode + node)] > 0.0;
-        row[node] = shared ? (int) of_row.size() : -1;
-        if (shared) of_row.push_back(node);
+        row[node] = shared ? (int) node_of_row.size() : -1;
+        if (shared) node_of_row.push_back(node);
       }
       // the nodes that two ranks share have the same masses: both know whether there is a message
       find_near(of, a, b);
       find_normals(of);
       find_gaps(of, a, b);
-      for (const int node : of_row) row[node] = -1;
+      for (const int node : node_of_row) row[node] = -1;
     }
 
   // by nodes
@@ -224,7 +200,7 @@ void FixMPMMeshContact::find(const MPMMeshBodies &of)
 void FixMPMMeshContact::find_near(const MPMMeshBodies &of, int a, int b)
 {
   near.clear();
-  if (of_row.empty()) return;
+  if (node_of_row.empty()) return;
   for (const int i : of.points) {
     const int body = body_of(atom->mask[i]);
     if (body != a && body != b) continue;
@@ -244,17 +220,17 @@ void FixMPMMeshContact::find_near(const MPMMeshBodies &of, int a, int b)
 /** Along the shortest way from points to points. */
 void FixMPMMeshContact::find_normals(const MPMMeshBodies &of)
 {
-  hulls.assign(of_row.size(), {});
+  hulls.assign(node_of_row.size(), {});
   std::vector<int> open = row;    // of nodes where it is not known yet
-  bool any = !of_row.empty();
+  bool any = !node_of_row.empty();
   for (int round = 0; round < HullDistance::ROUNDS && any; round++) {
-    ends.assign(8 * of_row.size(), -1.0e300);    // of a and of b: how far ahead, and where
+    ends.assign(8 * node_of_row.size(), -1.0e300);    // of a and of b: how far ahead, and where
     for (const auto &one : near) {
       const auto &hull = hulls[one.row];
       if (hull.done) continue;
       const double along = dot(hull.x, one.r),
-                   mine[4] = {one.of_b ? -along : along, one.r[0], one.r[1], one.r[2]};
-      double *const end = &ends[8 * one.row + 4 * one.of_b];
+                   mine[4] = {one.is_of_b ? -along : along, one.r[0], one.r[1], one.r[2]};
+      double *const end = &ends[8 * one.row + 4 * one.is_of_b];
       if (std::lexicographical_compare(end, end + 4, mine, mine + 4)) std::copy_n(mine, 4, end);
     }
     of.ranks.largest(ends.data(), 4, 2, open.data());
@@ -262,12 +238,12 @@ void FixMPMMeshContact::find_normals(const MPMMeshBodies &of)
     for (std::size_t r = 0; r < hulls.size(); r++) {
       hulls[r].advance(&ends[8 * r + 1], &ends[8 * r + 5]);
       if (hulls[r].done)
-        open[of_row[r]] = -1;
+        open[node_of_row[r]] = -1;
       else
         any = true;
     }
   }
-  normals.resize(of_row.size());
+  normals.resize(node_of_row.size());
   bool mixed = false;
   for (std::size_t r = 0; r < hulls.size(); r++) {
     const double length = std::sqrt(dot(hulls[r].x, hulls[r].x));
@@ -277,7 +253,8 @@ void FixMPMMeshContact::find_normals(const MPMMeshBodies &of)
   if (mixed) separate_mixed(of);
 }
 
-/** Where bodies have got into each other: along the normal of the plane that tells their points apart best. */
+/** Where bodies have got into each other: along the normal of the plane that tells their points
+ *  apart best. */
 void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
 {
   constexpr int N = PlaneBetween::NREAL;
@@ -286,14 +263,14 @@ void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
   };
   std::vector<int> mixed = row;
   for (std::size_t r = 0; r < hulls.size(); r++)
-    if (!is_mixed((int) r)) mixed[of_row[r]] = -1;
+    if (!is_mixed((int) r)) mixed[node_of_row[r]] = -1;
   std::vector<PlaneBetween> planes(hulls.size());
   std::vector<double> sums;
   for (int round = 0; round < PlaneBetween::ROUNDS; round++) {
     sums.assign(N * hulls.size(), 0.0);
     for (const auto &one : near)
       if (is_mixed(one.row))
-        planes[one.row].add(one.weight, one.r, one.of_b, &sums[(std::size_t) N * one.row]);
+        planes[one.row].add(one.weight, one.r, one.is_of_b, &sums[(std::size_t) N * one.row]);
     of.ranks.sum(sums.data(), N, mixed.data());
     for (std::size_t r = 0; r < planes.size(); r++)
       if (is_mixed((int) r)) planes[r].advance(&sums[N * r], of.mesh.dim);
@@ -308,13 +285,14 @@ void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
 }
 
 /* ----------------------------------------------------------------------
-   Half of the width of a point along n: that of a square or cube of its volume, stretched as planes with this normal are
+   Half of the width of a point along n: that of a square or cube of its volume, stretched as planes
+   with this normal are
 ------------------------------------------------------------------------- */
 
 void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
 {
   const int dim = of.mesh.dim;
-  ends.assign(2 * of_row.size(), -1.0e300);
+  ends.assign(2 * node_of_row.size(), -1.0e300);
   for (const auto &one : near) {
     const double *const n = normals[one.row].data(), *const F = points->F[one.point];
     double along = 0.0, stretch = 0.0, square = 0.0;
@@ -327,34 +305,37 @@ void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
     }
     if (square - along * along > BESIDE * BESIDE) continue;
     const double half = 0.5 * std::pow(atom->vfrac[one.point], 1.0 / dim) * std::sqrt(stretch) /
-        sizes[of_row[one.row]];
-    double &end = ends[2 * one.row + one.of_b];
-    end = std::max(end, (one.of_b ? -along : along) + half);
+        sizes[node_of_row[one.row]];
+    double &end = ends[2 * one.row + one.is_of_b];
+    end = std::max(end, (one.is_of_b ? -along : along) + half);
   }
   of.ranks.largest(ends.data(), 1, 2, row.data());
-  for (std::size_t r = 0; r < of_row.size(); r++) {
+  for (std::size_t r = 0; r < node_of_row.size(); r++) {
     const double depth = ends[2 * r] + ends[2 * r + 1];
     if (!(depth >= -ROUNDING)) continue;
     overlap = std::max(overlap, depth);
 
     // in the directions that are free at the node
 
-    const int node = of_row[r];
+    const int node = node_of_row[r];
     MeshVector n = normals[r], zero = {0.0, 0.0, 0.0};
     of.forces.constrain(node, 0.0, n.data());
     of.forces.constrain(node, 0.0, zero.data());
     for (int d = 0; d < 3; d++) n[d] -= zero[d];
     const double length = std::sqrt(dot(n.data(), n.data()));
     if (!(length > 1.0e-3)) continue;
-    found.push_back(
-        {a, b, {n[0] / length, n[1] / length, n[2] / length}, OPEN, 0.0, {0.0, 0.0, 0.0}});
+    MPMNodeContact contact = {};
+    contact.a = a;
+    contact.b = b;
+    for (int d = 0; d < 3; d++) contact.n[d] = n[d] / length;
+    found.push_back(contact);
     found_at.push_back(node);
   }
 }
 
 /* ----------------------------------------------------------------------
-   Impulses at a node. Of more than two bodies, those of all pairs follow from the same velocities, so that their order does not
-   matter (projected Jacobi iterations)
+   Impulses at a node. Of more than two bodies, those of all pairs follow from the same velocities,
+   so that their order does not matter (projected Jacobi iterations)
 ------------------------------------------------------------------------- */
 
 void FixMPMMeshContact::solve(const MPMMeshBodies &of, const Node &at,
@@ -362,101 +343,52 @@ void FixMPMMeshContact::solve(const MPMMeshBodies &of, const Node &at,
 {
   const std::size_t nnode = sizes.size();
   const int dim = of.mesh.dim;
-  double mass[MAX_BODIES];
-  MeshVector start[MAX_BODIES], now[MAX_BODIES], held[MAX_BODIES];
+  using Record = std::array<double, 4>;    // velocity and mass
+  Record held[MAX_BODIES], now[MAX_BODIES], end[MAX_BODIES];
   int nbody = 0;
   for (int b = 0; b < count(); b++) {
-    mass[b] = of.mass[of.stride * (b * nnode + at.node)];
-    if (!(mass[b] > 0.0)) continue;
+    const double mass = of.mass[of.stride * (b * nnode + at.node)];
+    const MeshVector &v = velocities[b * nnode + at.node];
+    end[b] = held[b] = {v[0], v[1], v[2], mass};
+    if (!(mass > 0.0)) continue;
     nbody++;
-    start[b] = held[b] = velocities[b * nnode + at.node];
     of.forces.constrain(at.node, 0.0, held[b].data());
     now[b] = held[b];
   }
   for (int p = at.first; p < at.last; p++) {
-    pairs[p].normal = 0.0;
-    std::fill_n(pairs[p].tangential, 3, 0.0);
+    MPMNodeContact &pair = pairs[p];
+    pair.begin({}, {});
+    pair.ra = now[pair.a].data();
+    pair.rb = now[pair.b].data();
   }
-  const auto add_impulses = [&](const MeshVector *from, MeshVector *to) {
-    for (int b = 0; b < count(); b++)
-      if (mass[b] > 0.0) to[b] = from[b];
-    for (int p = at.first; p < at.last; p++) {
-      const Pair &pair = pairs[p];
-      for (int d = 0; d < dim; d++) {
-        const double J = pair.normal * pair.n[d] + pair.tangential[d];
-        to[pair.a][d] -= J / mass[pair.a];
-        to[pair.b][d] += J / mass[pair.b];
-      }
-    }
-  };
   for (int it = 0; it < MAX_ITERATIONS; it++) {
     double largest = 0.0;
-    for (int p = at.first; p < at.last; p++) {
-      Pair &pair = pairs[p];
-      const double ma = mass[pair.a], mb = mass[pair.b], m = ma * mb / (ma + mb) / (nbody - 1);
-      double u[3] = {0.0, 0.0, 0.0}, un = 0.0, t[3] = {0.0, 0.0, 0.0}, length = 0.0, speeds = 0.0;
-      for (int d = 0; d < dim; d++) {
-        u[d] = now[pair.a][d] - now[pair.b][d];
-        un += u[d] * pair.n[d];
-        speeds += std::fabs(now[pair.a][d]) + std::fabs(now[pair.b][d]);
-      }
-      for (int d = 0; d < dim; d++) {
-        t[d] = pair.tangential[d] + m * (u[d] - un * pair.n[d]);
-        length += t[d] * t[d];
-      }
-      length = std::sqrt(length);
-      double normal = pair.normal + m * un, keep;
-      if (decided) {
-        keep = pair.state == STUCK ? 1.0 : 0.0;
-        if (pair.state == OPEN) normal = 0.0;
-      } else {
-        const double rounding = APPROACH * m * speeds;
-        const bool open = normal < -rounding;
-        normal = std::max(normal, 0.0);
-        const double limit = static_friction * normal;
-        if (law == STICK) {
-          if (normal <= rounding) normal = 0.0;
-          keep = normal > 0.0 ? 1.0 : 0.0;
-        } else if (limit == 0.0)
-          keep = 0.0;
-        else
-          keep = length > limit ? kinetic_friction * normal / length : 1.0;
-        pair.state = open ? OPEN : keep == 1.0 ? STUCK : SLIDING;
-      }
-      double change = std::fabs(normal - pair.normal);
-      pair.normal = normal;
-      for (int d = 0; d < dim; d++) {
-        change += std::fabs(keep * t[d] - pair.tangential[d]);
-        pair.tangential[d] = keep * t[d];
-      }
-      largest = std::max(largest, change / (std::fabs(normal) + length + m * speeds + 1.0e-300));
-    }
-    add_impulses(held, now);
+    for (int p = at.first; p < at.last; p++)
+      largest = std::max(largest, pairs[p].iterate(*this, dim, nbody - 1, 0.0, decided));
+    std::copy_n(held, count(), now);
+    for (int p = at.first; p < at.last; p++) pairs[p].push(dim);
     if (nbody == 2 || largest < CONVERGED) break;
   }
-  MeshVector end[MAX_BODIES];
-  add_impulses(start, end);
-  for (int b = 0; b < count(); b++)
-    if (mass[b] > 0.0) velocities[b * nnode + at.node] = end[b];
-  if (decided || !of.ranks.first[at.node]) return;
+  const bool counts = !decided && of.ranks.first[at.node];
   for (int p = at.first; p < at.last; p++) {
-    const Pair &pair = pairs[p];
-    if (pair.state == OPEN) continue;
-    auto &account = accounts[pair_index(pair.a, pair.b, count())];
-    account.count += 1.0;
-    for (int d = 0; d < dim; d++) {
-      account.impulse[d] += pair.normal * pair.n[d] + pair.tangential[d];
-      account.work += pair.tangential[d] * (now[pair.b][d] - now[pair.a][d]);
+    MPMNodeContact &pair = pairs[p];
+    if (counts && pair.state != MPMNodeContact::OPEN) {
+      auto &entry = report.of(pair.a, pair.b);
+      entry.work += entry.add(pair, dim);
     }
+    pair.ra = end[pair.a].data();
+    pair.rb = end[pair.b].data();
+    pair.push(dim);
   }
+  for (int b = 0; b < count(); b++)
+    if (end[b][3] > 0.0) std::copy_n(end[b].data(), 3, velocities[b * nnode + at.node].data());
 }
 
 void FixMPMMeshContact::act(const MPMMeshBodies &of, std::vector<MeshVector> &velocities,
                             bool decided)
 {
   if (!decided) {
-    dt_last = update->dt;
-    for (auto &one : accounts) one = {{0.0, 0.0, 0.0}, 0.0, one.work};
+    report.begin_step(update->dt);
     find(of);
     if (look) warn_overlap();
     look = false;
@@ -476,45 +408,12 @@ void FixMPMMeshContact::warn_overlap()
                    id, deepest);
 }
 
-/* ----------------------------------------------------------------------
-   work of friction so far
-------------------------------------------------------------------------- */
-
-double FixMPMMeshContact::compute_scalar()
-{
-  double mine = 0.0, all;
-  for (const auto &account : accounts) mine += account.work;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
-  return all * force->mvv2e;
-}
-
-/* ----------------------------------------------------------------------
-   rows: pairs of bodies; columns: force on the second by the first in the last step, nodes in contact, work of friction so far
-------------------------------------------------------------------------- */
-
-double FixMPMMeshContact::compute_array(int row, int column)
-{
-  if (array_step != update->ntimestep) {
-    array_step = update->ntimestep;
-    double mine[MAX_PAIRS][5];
-    for (int p = 0; p < size_array_rows; p++) {
-      const auto &[impulse, count, work] = accounts[p];
-      for (int d = 0; d < 3; d++)
-        mine[p][d] = dt_last > 0.0 ? impulse[d] / (dt_last * force->ftm2v) : 0.0;
-      mine[p][3] = count;
-      mine[p][4] = work * force->mvv2e;
-    }
-    MPI_Allreduce(mine, array, 5 * size_array_rows, MPI_DOUBLE, MPI_SUM, world);
-  }
-  return array[row][column];
-}
-
 void FixMPMMeshContact::write_restart(FILE *fp)
 {
   std::vector<double> totals = {comm->me == 0 ? (double) size_array_rows : 0.0};
-  for (int p = 0; p < size_array_rows; p++) totals.push_back(accounts[p].work);
+  for (int p = 0; p < size_array_rows; p++) totals.push_back(report.entries[p].work);
   write_totals(fp, world, totals);
-  for (int p = 0; p < size_array_rows; p++) accounts[p].work = totals[p + 1];
+  for (int p = 0; p < size_array_rows; p++) report.entries[p].work = totals[p + 1];
 }
 
 void FixMPMMeshContact::restart(char *buf)
@@ -525,13 +424,14 @@ void FixMPMMeshContact::restart(char *buf)
                "Fix mpm/mesh/contact {} had another number of bodies when the restart file was "
                "written: name as many, or give the fix another ID to begin anew",
                id);
-  for (int p = 0; p < size_array_rows; p++) accounts[p].work = comm->me == 0 ? list[p + 1] : 0.0;
+  for (int p = 0; p < size_array_rows; p++)
+    report.entries[p].work = comm->me == 0 ? list[p + 1] : 0.0;
 }
 
 double FixMPMMeshContact::memory_usage()
 {
-  return (double) (near.capacity() * sizeof(Near) + pairs.capacity() * sizeof(Pair) +
+  return (double) (near.capacity() * sizeof(Near) + pairs.capacity() * sizeof(MPMNodeContact) +
                    hulls.capacity() * sizeof(HullDistance) +
                    (sizes.capacity() + ends.capacity()) * sizeof(double) +
-                   (row.capacity() + of_row.capacity()) * sizeof(int));
+                   (row.capacity() + node_of_row.capacity()) * sizeof(int));
 }

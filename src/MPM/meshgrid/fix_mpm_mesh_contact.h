@@ -15,6 +15,8 @@ FixStyle(mpm/mesh/contact,FixMPMMeshContact);
 #ifndef LMP_FIX_MPM_MESH_CONTACT_H
 #define LMP_FIX_MPM_MESH_CONTACT_H
 
+#include "contact/mpm_contact_report.h"
+#include "contact/mpm_node_contact.h"
 #include "declare/option.h"
 #include "fix.h"
 #include "math/hull_distance.h"
@@ -29,17 +31,12 @@ class MPMMeshRanks;
 struct MPMPoints;
 
 /** Keywords of fix mpm/mesh/contact. */
-struct MPMMeshContactOptions {
-  enum Law { FRICTIONLESS, COULOMB, STICK };
-
-  Law law = FRICTIONLESS;
-  double kinetic_friction = 0.0;
-  double static_friction = -1.0;    ///< negative: equal to kinetic_friction
-
+struct MPMMeshContactOptions : MPMContactLaw {
   MPM_NS::Options declare();
 };
 
-/** Data of fix mpm/mesh for contact and heat. Data of nodes have the row b * nodes + node for body b of several bodies. */
+/** Data of fix mpm/mesh for contact and heat. Data of nodes have the row b * nodes + node for body
+ *  b of several bodies. */
 struct MPMMeshBodies {
   const MPM_NS::BackgroundMesh &mesh;
   MPMMeshRanks &ranks;
@@ -50,7 +47,8 @@ struct MPMMeshBodies {
   std::size_t stride;                                          ///< distance from row to row
 };
 
-/** Contact of bodies, groups of points of one fix mpm/mesh, each with its own velocities at the nodes. */
+/** Contact of bodies, groups of points of one fix mpm/mesh, each with its own velocities at the
+ *  nodes. */
 class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
  public:
   FixMPMMeshContact(class LAMMPS *, int, char **);
@@ -58,12 +56,12 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   void init() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  double compute_scalar() override;
-  double compute_array(int, int) override;
+  double compute_scalar() override { return report.work(); }
+  double compute_array(int row, int column) override { return report.at(row, column); }
   double memory_usage() override;
 
   /** ID of its fix mpm/mesh. */
-  const std::string &of_mesh() const { return mesh_id; }
+  const std::string &mesh_fix() const { return mesh_id; }
   /** Number of bodies. */
   int count() const { return (int) groups.size(); }
   /** Body of a point with this group mask; -1: none, -2: several. */
@@ -71,57 +69,41 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
 
   /** Prepares a run. */
   void begin_run(const MPM_NS::BackgroundMesh &);
-  /** Applies impulses between bodies to velocities [row] of nodes where they touch. decided: for velocities that were
-   *  mapped back, which are in contact at the same nodes as found earlier in this step. Collective. */
+  /** Applies impulses between bodies to velocities [row] of nodes where they touch. decided: for
+   *  velocities that were mapped back, which are in contact at the same nodes as found earlier in
+   *  this step. Collective. */
   void act(const MPMMeshBodies &, std::vector<MPM_NS::MeshVector> &velocities, bool decided);
 
   static constexpr int MAX_BODIES = 8;
 
  private:
-  static constexpr int MAX_PAIRS = MAX_BODIES * (MAX_BODIES - 1) / 2;
-
-  enum State : char { OPEN, SLIDING, STUCK };
-
-  struct Pair {    // two bodies that touch at a node
-    int a, b;
-    double n[3];    // unit normal from a to b, within the directions that conditions leave free
-    State state;
-    double normal, tangential[3];    // impulses on b so far
-  };
   struct Node {               // where bodies touch
     int node, first, last;    // range in pairs
   };
   /** A point of one of two bodies in reach of a node that both have. */
   struct Near {
     int row;    // index of the node among the shared nodes
-    bool of_b;
-    double weight,
-        r[3];    // node function at the point; vector from the node to the point, in sizes of the node
+    bool is_of_b;
+    double weight;    // node function at the point
+    double r[3];      // vector from the node to the point, in sizes of the node
     int point;
   };
-  struct Account {        // of two bodies, this rank's share
-    double impulse[3];    // on the second body in the last step
-    double count;         // nodes in contact
-    double work;          // of friction so far
-  };
-
   std::string mesh_id;
   std::vector<int> groups;    // bits
   MPMPoints *points = nullptr;
   std::vector<double> sizes;    // [node] size of the volume that belongs to it
   std::vector<Node> nodes;
-  std::vector<Pair> pairs, found;    // found: [index in found_at]
-  std::vector<int> found_at;         // nodes of found
-  double overlap = 0.0;              // largest overlap in this step, in sizes of points
-  bool look = true;                  // check for overlap
-  double dt_last = 0.0;
-  Account accounts[MAX_PAIRS] = {};
-  double array[MAX_PAIRS][5] = {};
-  bigint array_step = -1;
+  /** Contacts, with normals within the directions that conditions leave free; found: [index in
+   *  found_at] */
+  std::vector<MPMNodeContact> pairs, found;
+  std::vector<int> found_at;    // nodes of found
+  double overlap = 0.0;         // largest overlap in this step, in sizes of points
+  bool look = true;             // check for overlap
+  MPMContactReport report;
 
   // of the pair of bodies that is being treated
 
-  std::vector<int> row, of_row;    // [node] row, -1: not shared; [row] node
+  std::vector<int> row, node_of_row;    // [node] row, -1: not shared; [row] node
   std::vector<Near> near;
   std::vector<MPM_NS::HullDistance> hulls;
   std::vector<MPM_NS::MeshVector> normals;

@@ -7,14 +7,17 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The equations are those of fix mpm/heat with the transfer relax (mpm_conduction.cpp), with the functions of the cells in place of those
-   of a lattice. In the total frame points stay in their cells, so that no node has next to no capacity, and flow goes by
+   The equations are those of fix mpm/heat with the transfer relax (mpm_conduction.cpp), with the
+   functions of the cells in place of those of a lattice. In the total frame points stay in their
+   cells, so that no node has next to no capacity, and flow goes by
 
      C_i dT_i/dt = - sum_p V_p (F^-1 k F^-T sum_j T_j grad N_jp) . grad N_ip + sides,
 
-   with gradients in the reference configuration and the present volume V_p. Nodes are on the boundary: their temperatures are those that groups
-   prescribe, and the heat for it is what comes through the group. That of sides is lumped at their nodes, as capacities are. A step is
-   made of stages, so many that the rate of no node times their duration is above one: the rows of the matrix bound its eigenvalues.
+   with gradients in the reference configuration and the present volume V_p. Nodes are on the
+   boundary: their temperatures are those that groups prescribe, and the heat for it is what comes
+   through the group. That of sides is lumped at their nodes, as capacities are. A step is made of
+   stages, so many that the rate of no node times their duration is above one: the rows of the
+   matrix bound its eigenvalues.
 ------------------------------------------------------------------------- */
 
 #include "meshgrid/fix_mpm_mesh_heat.h"
@@ -47,7 +50,7 @@ using namespace MPM_NS;
 static constexpr int MOST_STAGES = 100;    // of a step
 
 static constexpr double SAME =
-    2.0;    // conductivities in a cell that differ by a larger factor are told of
+    2.0;    // conductivities in a cell that differ by a larger factor lead to a warning
 
 static constexpr int WIDTH =
     3;    // sums at nodes: capacity, that times temperature, row of the matrix
@@ -168,14 +171,14 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
   largest = 0.0;
   for (const auto &cell : mesh.cells) largest = std::max(largest, cell.height);
 
-  of_nodes.clear();
+  conditions_at_nodes.clear();
   held.assign(mesh.nodes.size(), 0);
   for (std::size_t c = 0; c < conditions.size(); c++) {
     const auto &given = conditions[c];
     const int condition = (int) c;
     if (given.kind == MPMMeshHeatCondition::TEMPERATURE) {
       for (const int node : mesh.nodes_of(given.group)) {
-        of_nodes.push_back({node, condition, 0.0});
+        conditions_at_nodes.push_back({node, condition, 0.0});
         held[node] = 1;
       }
       continue;
@@ -188,7 +191,7 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
       for (int k = 0; k < face.nnode; k++) area[face.node[k]] += share[k] * size;
     }
     for (std::size_t node = 0; node < area.size(); node++)
-      if (area[node] > 0.0) of_nodes.push_back({(int) node, condition, area[node]});
+      if (area[node] > 0.0) conditions_at_nodes.push_back({(int) node, condition, area[node]});
   }
   const std::size_t n = mesh.nodes.size();
   for (auto *values : {&capacity, &value, &before, &rate}) values->assign(n, 0.0);
@@ -250,8 +253,9 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
   }
 }
 
-/** Points that are partly molten have the conductivity of neither phase if it jumps there: as mpm_conduction.cpp, with the temperatures that nodes
- *  have within an eighth of their range in the cell on either side, with which fronts are nearer to their places than with a quarter. */
+/** Points that are partly molten have the conductivity of neither phase if it jumps there: as
+ *  mpm_conduction.cpp, with the temperatures that nodes have within an eighth of their range in the
+ *  cell on either side, with which fronts are nearer to their places than with a quarter. */
 Conduction FixMPMMeshHeat::conduction_of(const MPMMeshBodies &of, const Thermal &t, int i,
                                          bool nodes_known) const
 {
@@ -272,7 +276,8 @@ Conduction FixMPMMeshHeat::conduction_of(const MPMMeshBodies &of, const Thermal 
   return mean_conduction(*t.fix->material, history, T - reach, T + reach);
 }
 
-/** V F^-1 k F^-T of a conductivity across and along an interface, whose normal in the deformed body is along F^-T N. */
+/** V F^-1 k F^-T of a conductivity across and along an interface, whose normal in the deformed body
+ *  is along F^-T N. */
 void FixMPMMeshHeat::set_layers(const Cut &cut, const double *cofactors, double J, double V,
                                 double *k)
 {
@@ -322,9 +327,11 @@ void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
   }
 }
 
-/** In cells that an interface of materials cuts, functions of nodes have no kink, and too much heat would go through: their points have the harmonic mean
- *  of the conductivities across the interface and the arithmetic one along it, of which the places of points tell the normal. In the total frame
- *  points stay in their cells. Not with conductivities that vary or have axes, of which a warning tells, once. */
+/** In cells that an interface of materials cuts, functions of nodes have no kink, and too much heat
+ *  would go through: their points have the harmonic mean of the conductivities across the interface
+ *  and the arithmetic one along it, of which the places of points tell the normal. In the total
+ *  frame points stay in their cells. Not with conductivities that vary or have axes, of which a
+ *  warning tells, once. */
 void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
 {
   if (layers_known) return;
@@ -359,13 +366,13 @@ void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
   }
   MPI_Allreduce(range.data(), all.data(), static_cast<int>(2 * n), MPI_DOUBLE, MPI_MAX, world);
   MPI_Allreduce(mine.data(), sum.data(), static_cast<int>(NSUM * n), MPI_DOUBLE, MPI_SUM, world);
-  int told = 0;
+  int layered = 0;
   double most = 1.0;
   for (std::size_t c = 0; c < n; c++) {
     const double greatest = all[2 * c], least = -all[2 * c + 1], *const s = &sum[NSUM * c];
     if (greatest < 0.0 || greatest == least) continue;
     if (!plain) {
-      told += greatest > SAME * least;
+      layered += greatest > SAME * least;
       most = std::max(most, greatest / least);
       continue;
     }
@@ -377,14 +384,14 @@ void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
     cut_of[c] = static_cast<int>(cuts.size());
     cuts.push_back(cut);
   }
-  if (!told || told_of_layers) return;
-  told_of_layers = true;
+  if (!layered || warned_of_layers) return;
+  warned_of_layers = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/mesh/heat {}: {} cells have points of materials whose conductivities "
                    "differ by a factor of up to {:.3g}, and one of which varies or is orthotropic: "
                    "too much heat goes through interfaces that are not along sides of cells",
-                   id, told, most);
+                   id, layered, most);
 }
 
 /** Capacities and temperatures of nodes; returns the greatest rate of those of this rank. */
@@ -415,7 +422,7 @@ double FixMPMMeshHeat::fill_nodes(const MPMMeshBodies &of)
     }
   }
   of.ranks.sum(sums.data(), WIDTH);
-  for (const auto &mine : of_nodes)
+  for (const auto &mine : conditions_at_nodes)
     if (conditions[mine.condition].kind == MPMMeshHeatCondition::CONVECTION)
       sums[WIDTH * (std::size_t) mine.node + 2] += mine.area * present[2 * mine.condition];
   double fastest = 0.0;
@@ -431,7 +438,7 @@ double FixMPMMeshHeat::fill_nodes(const MPMMeshBodies &of)
 /** Nodes take the temperatures that are prescribed, the last one in the input where groups meet. */
 void FixMPMMeshHeat::hold(const MPMMeshBodies &of)
 {
-  for (const auto &mine : of_nodes) {
+  for (const auto &mine : conditions_at_nodes) {
     if (conditions[mine.condition].kind != MPMMeshHeatCondition::TEMPERATURE) continue;
     if (!(capacity[mine.node] > 0.0)) continue;
     const double T = present[2 * mine.condition];
@@ -441,7 +448,8 @@ void FixMPMMeshHeat::hold(const MPMMeshBodies &of)
   }
 }
 
-/** A stage. Heat that a node would get whose temperature is prescribed leaves through the group that does so. */
+/** A stage. Heat that a node would get whose temperature is prescribed leaves through the group
+ *  that does so. */
 void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
 {
   for (const int node : of.ranks.nodes) rate[node] = 0.0;
@@ -455,7 +463,7 @@ void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
     for (int k = 0; k < cell.nnode; k++) rate[cell.node[k]] -= dot(place.g[k], flow);
   }
   of.ranks.sum(rate.data(), 1);
-  for (const auto &mine : of_nodes) {
+  for (const auto &mine : conditions_at_nodes) {
     const auto kind = conditions[mine.condition].kind;
     if (kind == MPMMeshHeatCondition::TEMPERATURE || !(capacity[mine.node] > 0.0)) continue;
     const double *const given = &present[2 * mine.condition];
@@ -464,7 +472,7 @@ void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
     rate[mine.node] += flow;
     if (of.ranks.first[mine.node]) power[mine.condition] += dt * flow;
   }
-  for (auto mine = of_nodes.rbegin(); mine != of_nodes.rend(); ++mine) {
+  for (auto mine = conditions_at_nodes.rbegin(); mine != conditions_at_nodes.rend(); ++mine) {
     if (conditions[mine->condition].kind != MPMMeshHeatCondition::TEMPERATURE) continue;
     if (!(capacity[mine->node] > 0.0)) continue;
     if (of.ranks.first[mine->node]) power[mine->condition] -= dt * rate[mine->node];
@@ -503,7 +511,8 @@ void FixMPMMeshHeat::take(const MPMMeshBodies &of, double dt)
 }
 
 /* ----------------------------------------------------------------------
-   scalar: heat that points have taken so far; vector: for each condition its power in the last step, and heat so far
+   scalar: heat that points have taken so far; vector: for each condition its power in the last
+   step, and heat so far
 ------------------------------------------------------------------------- */
 
 double FixMPMMeshHeat::compute_scalar()
@@ -523,7 +532,7 @@ double FixMPMMeshHeat::compute_vector(int k)
 double FixMPMMeshHeat::memory_usage()
 {
   return FixMPMState::memory_usage() + (double) conducting.capacity() * sizeof(Point) +
-      (double) (of_nodes.capacity() * sizeof(OfNode) +
+      (double) (conditions_at_nodes.capacity() * sizeof(NodeCondition) +
                 (capacity.capacity() + value.capacity() + before.capacity() + rate.capacity() +
                  sums.capacity()) *
                     sizeof(double));

@@ -49,7 +49,8 @@ struct MPMMeshHeatOptions {
   MPMMeshHeatCondition next;    // being read
 };
 
-/** Conduction of heat between points on a mesh (fix mpm/mesh, frame total), with conditions at its physical groups. */
+/** Conduction of heat between points on a mesh (fix mpm/mesh, frame total), with conditions at its
+ *  physical groups. */
 class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
  public:
   FixMPMMeshHeat(class LAMMPS *, int, char **);
@@ -62,7 +63,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   void restart(char *) override;
 
   /** ID of its fix mpm/mesh. */
-  const std::string &of_mesh() const { return mesh_id; }
+  const std::string &mesh_fix() const { return mesh_id; }
   /** Prepares a run. Throws std::runtime_error if the mesh lacks a group of a condition. */
   void begin_run(const MPM_NS::BackgroundMesh &);
   /** Conducts heat for a time step. Collective. */
@@ -81,11 +82,11 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
     int i;
     const Thermal *thermal;
     double capacity;
-    double k
-        [9];    // conductivity for gradients in the reference configuration, times the volume, row-major
+    // conductivity for gradients in the reference configuration, times the volume, row-major
+    double k[9];
   };
   /** A condition at a node, with its area. */
-  struct OfNode {
+  struct NodeCondition {
     int node, condition;
     double area;
   };
@@ -99,7 +100,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   MPMRows gradients;    // [n][3] of the temperature at points, in the reference configuration
   MPMPoints *points = nullptr;
   std::vector<Thermal> thermals;
-  std::vector<OfNode> of_nodes;
+  std::vector<NodeCondition> conditions_at_nodes;
   double largest = 0.0;    // largest height of a cell
   double relaxed = 0.0;    // diffusivity with which points relax to the temperature of the nodes
   std::vector<Point> conducting;
@@ -111,9 +112,9 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   std::vector<double> power;      // [condition] power in the last step
 
   std::vector<Cut> cuts;
-  std::vector<int> cut_of;        // [cell] index in cuts; -1: none
-  bool layers_known = false;      // were the cuts found in this run?
-  bool told_of_layers = false;    // was a warning printed about interfaces without means?
+  std::vector<int> cut_of;          // [cell] index in cuts; -1: none
+  bool layers_known = false;        // were the cuts found in this run?
+  bool warned_of_layers = false;    // was a warning printed about interfaces without means?
 
   const Thermal *thermal(int i) const;
   void find_layers(const MPMMeshBodies &);

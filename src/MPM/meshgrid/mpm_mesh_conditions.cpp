@@ -25,11 +25,13 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// sides whose normals differ by less than 30 degrees are those of a curved wall, others meet at an edge
+// sides whose normals differ by less than 30 degrees are those of a curved wall, others meet at an
+// edge
 
 static constexpr double SMOOTH = 0.866;
 
-static constexpr double LOST = 0.01;    // share of a load on nodes without mass that is told
+static constexpr double LOST =
+    0.01;    // share of a load on nodes without mass that leads to a warning
 
 /* ---------------------------------------------------------------------- */
 
@@ -55,20 +57,21 @@ MPMMeshForces::MPMMeshForces(LAMMPS *lmp, const BackgroundMesh &mesh,
   }
 }
 
-MPMMeshForces::OfNode &MPMMeshForces::add(int node, int condition)
+MPMMeshForces::NodeCondition &MPMMeshForces::add(int node, int condition)
 {
   if (place[node] < 0) {
-    place[node] = (int) of_nodes.size();
-    of_nodes.emplace_back();
+    place[node] = (int) conditions_at_nodes.size();
+    conditions_at_nodes.emplace_back();
   }
-  auto &all = of_nodes[place[node]];
+  auto &all = conditions_at_nodes[place[node]];
   if (all.empty() || all.back().condition != condition)
     all.push_back({condition, {}, {0.0, 0.0, 0.0}, 0.0});
   return all.back();
 }
 
 /* ----------------------------------------------------------------------
-   a node where sides meet at an edge, or at walls of several conditions, has no velocity along any of their normals
+   a node where sides meet at an edge, or at walls of several conditions, has no velocity along any
+   of their normals
 ------------------------------------------------------------------------- */
 
 void MPMMeshForces::add_slip(int condition)
@@ -87,7 +90,7 @@ void MPMMeshForces::add_slip(int condition)
       for (int d = 0; d < 3; d++) (*same)[d] += share[k] * normal[d];
     }
   }
-  for (auto &all : of_nodes) {
+  for (auto &all : conditions_at_nodes) {
     if (all.back().condition != condition) continue;
     std::vector<MeshVector> right_angles, before;
     for (const auto &other : all)
@@ -168,7 +171,7 @@ void MPMMeshForces::follow(const std::vector<char> &cells, const std::vector<Mes
   ranks.sum(normals.data(), width);
   for (const int node : ranks.nodes) {
     if (place[node] < 0) continue;
-    for (auto &mine : of_nodes[place[node]]) {
+    for (auto &mine : conditions_at_nodes[place[node]]) {
       const int number = list[mine.condition].number;
       if (number >= 0)
         std::copy_n(&normals[(std::size_t) width * node + 3 * number], 3, mine.normal.data());
@@ -185,7 +188,7 @@ void MPMMeshForces::warn_of_lost_loads(const std::string &user,
   for (int node = 0; node < (int) place.size(); node++) {
     if (place[node] < 0) continue;
     const bool there = carries(node);
-    for (const auto &one : of_nodes[place[node]]) {
+    for (const auto &one : conditions_at_nodes[place[node]]) {
       all[one.condition] += one.area;
       if (there) mine[one.condition] += one.area;
     }
@@ -207,7 +210,7 @@ void MPMMeshForces::add_load(int node, double share, bool count, double *f)
 {
   if (place[node] < 0) return;
   const double unit = share / force->nktv2p;
-  for (const auto &mine : of_nodes[place[node]]) {
+  for (const auto &mine : conditions_at_nodes[place[node]]) {
     auto &c = list[mine.condition];
     if (c.given.kind == MPMMeshCondition::PRESSURE || c.given.kind == MPMMeshCondition::TRACTION)
       for (int d = 0; d < 3; d++) {
@@ -223,7 +226,7 @@ void MPMMeshForces::add_load(int node, double share, bool count, double *f)
 void MPMMeshForces::constrain(int node, double mass_per_time, double *v)
 {
   if (place[node] < 0) return;
-  for (const auto &mine : of_nodes[place[node]]) {
+  for (const auto &mine : conditions_at_nodes[place[node]]) {
     auto &c = list[mine.condition];
     const MeshVector before = {v[0], v[1], v[2]};
     if (c.given.kind == MPMMeshCondition::SLIP)

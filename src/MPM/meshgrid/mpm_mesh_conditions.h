@@ -36,8 +36,8 @@ struct MPMMeshCondition {
   MPM_NS::NumberOrVariable value[3];
 };
 
-/** Returns the group for which conditions of this kind are given twice with one of the first n values in both,
- *  or an empty string. */
+/** Returns the group for which conditions of this kind are given twice with one of the first n
+ *  values in both, or an empty string. */
 template <class Condition>
 std::string group_given_twice(const std::vector<Condition> &all, int kind, int n = 1)
 {
@@ -69,20 +69,20 @@ class MPMMeshForces : protected Pointers {
   bool has_pressure() const { return npressure > 0; }
   /** Is there any pressure or traction? */
   bool has_loads() const;
-  /** Lets pressure act on sides whose nodes have moved to these positions. cells: those whose sides this rank
-   *  handles. Collective. */
+  /** Lets pressure act on sides whose nodes have moved to these positions. cells: those whose sides
+   *  this rank handles. Collective. */
   void follow(const std::vector<char> &cells, const std::vector<MPM_NS::MeshVector> &positions,
               class MPMMeshRanks &ranks);
 
-  /** Start of a run: warns of loads on sides whose nodes have no mass. carries: does this rank count the node,
-   *  and does the node have mass? Collective. */
+  /** Start of a run: warns of loads on sides whose nodes have no mass. carries: does this rank
+   *  count the node, and does the node have mass? Collective. */
   void warn_of_lost_loads(const std::string &user, const std::function<bool(int)> &carries) const;
 
   /** Adds a share of the force of all loads on a node [force]. count: include it in the output. */
   void add_load(int node, double share, bool count, double *force);
 
-  /** Applies the conditions of a node to its velocity v. mass_per_time: converts the change to the force on the
-   *  body for the output; 0: it is not counted. */
+  /** Applies the conditions of a node to its velocity v. mass_per_time: converts the change to the
+   *  force on the body for the output; 0: it is not counted. */
   void constrain(int node, double mass_per_time, double *v);
 
   /** Resets the sums for the output. */
@@ -98,7 +98,7 @@ class MPMMeshForces : protected Pointers {
     int number;    // index among the conditions with a pressure
     std::vector<MPM_NS::BackgroundMesh::Face> sides;
   };
-  struct OfNode {
+  struct NodeCondition {
     int condition;
     std::vector<MPM_NS::MeshVector> normals;    // for SLIP: unit vectors at right angles
     MPM_NS::MeshVector normal;    // for sides with loads: outward normal with the size of the area
@@ -108,12 +108,12 @@ class MPMMeshForces : protected Pointers {
   std::vector<Active> list;
   int npressure = 0;
   std::vector<double> normals;    // [node][pressure][3]
-  std::vector<int> place;         // [node] index in of_nodes, -1: none
+  std::vector<int> place;         // [node] index in conditions_at_nodes, -1: none
   // conditions of a node: first SLIP, then others, in the order of the input
-  std::vector<std::vector<OfNode>> of_nodes;
+  std::vector<std::vector<NodeCondition>> conditions_at_nodes;
   bool varies = false;
 
-  OfNode &add(int node, int condition);
+  NodeCondition &add(int node, int condition);
   void add_slip(int condition);
   void add_sides(int condition);
 };

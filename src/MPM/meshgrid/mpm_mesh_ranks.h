@@ -15,7 +15,8 @@
 
 namespace LAMMPS_NS {
 
-/** Distribution of the nodes of a mesh, which all ranks know, over ranks, and sums over ranks at shared nodes. */
+/** Distribution of the nodes of a mesh, which all ranks know, over ranks, and sums over ranks at
+ *  shared nodes. */
 class MPMMeshRanks : protected Pointers {
  public:
   std::vector<int> nodes;     ///< nodes of this rank, in ascending order
@@ -26,13 +27,13 @@ class MPMMeshRanks : protected Pointers {
   /** Finds the nodes and sharers. mine: [node] does this rank need the node? Collective. */
   void find(const std::vector<char> &mine);
 
-  /** Sums rows of values, [node][width], over ranks; all ranks get the same bits. Nodes that no other rank
-   *  shares are left alone. row: [node] index of the row of this node in values, -1: none; all ranks that have
-   *  a node must agree on whether it has a row. null: all nodes. */
+  /** Sums rows of values, [node][width], over ranks; all ranks get the same bits. Nodes that no
+   *  other rank shares are left alone. row: [node] index of the row of this node in values, -1:
+   *  none; all ranks that have a node must agree on whether it has a row. null: all nodes. */
   void sum(double *values, int width, const int *row = nullptr);
 
-  /** Replaces each part of a row (parts of this width) by the largest among ranks: the one with the greatest
-   *  first value and, where first values are equal, the greatest next one. */
+  /** Replaces each part of a row (parts of this width) by the largest among ranks: the one with the
+   *  greatest first value and, where first values are equal, the greatest next one. */
   void largest(double *values, int width, int parts, const int *row);
 
   double memory_usage() const;

@@ -16,6 +16,7 @@
 
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
+#include "math/coulomb.h"
 #include "walls/mpm_wall.h"
 #include "walls/mpm_wall_reaction.h"
 
@@ -43,7 +44,8 @@ double MPMWallContact::tangential_share(MPMContactState &state, double normal, d
     if (wall.kind == MPMWall::SEPARATE && normal <= std::max(of_water, 0.0)) {
       state = MPMContactState::OPEN;
     } else if (wall.friction > 0.0 && grains > 0.0) {
-      if (tangential > wall.friction * grains) return wall.friction * grains / tangential;
+      const CoulombFriction law = {wall.friction, wall.friction};
+      if (law.slides(tangential, grains)) return law.share(tangential, grains);
       state = MPMContactState::STUCK;
     }
   }

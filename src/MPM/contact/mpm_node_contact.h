@@ -1,0 +1,95 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_NODE_CONTACT_H
+#define LMP_MPM_NODE_CONTACT_H
+
+#include "declare/option.h"
+#include "math/coulomb.h"
+
+#include <vector>
+
+namespace LAMMPS_NS {
+
+/** Law of contact between two bodies, and its keywords. */
+struct MPMContactLaw {
+  enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
+
+  Law law = FRICTIONLESS;
+  MPM_NS::CoulombFriction friction = {0.0, -1.0};    ///< still < 0: equal to kinetic
+  double normal_strength = 0.0, shear_strength = 0.0, release_work = 0.0;
+
+  double pressure_unit = 1.0;    ///< impulse by a unit of pressure, area, and time
+  /** Bodies whose approach is zero up to round-off are in contact (with law stick, they are
+   *  not). */
+  bool keeps_rest = false;
+  /** Impulses below this part of the momentum do not count as changes in iterations. */
+  double rounded = 1.0e-2;
+
+  /** Declares the keyword law; adhesion: is there law adhesive? */
+  void declare_law(MPM_NS::Options &, bool adhesion);
+  /** The rule for coefficients of friction. */
+  MPM_NS::OptionRule coefficients() const;
+  /** Sets the coefficient of static friction if the input does not. */
+  void complete();
+  bool operator==(const MPMContactLaw &) const;
+  /** Share of the adhesive strength that remains when the bodies are apart by this distance. */
+  double adhesion_at(double opening) const;
+};
+
+/** What walls will do to a body at a node after contact. */
+struct MPMNodeWalls {
+  char held = 0;         ///< bits: components to which walls give their velocity
+  char mirrored = 0;     ///< bits: components that move with those of the mirror nodes
+  char outside = 0;      ///< bits: mirrored components of a node outside of the mirror
+  double velocity[3];    ///< velocity that walls will give to these components
+  double mass[3];        ///< of the node and its mirror nodes
+  double start[3];       ///< present velocity of the node
+
+  /** Does the node with this record move with mirror nodes that have mass? */
+  bool moves_with_mirrors(const double *record) const;
+  /** Component d of the velocity of this record, or the velocity that walls will give to it. */
+  double velocity_of(const double *record, int d) const;
+};
+
+/** Contact of two bodies at one node. Records of nodes are velocity [3] and mass. */
+struct MPMNodeContact {
+  enum State : char { OPEN, SLIDING, STUCK };
+
+  int a, b;           ///< indices of the bodies
+  double *ra, *rb;    ///< records of the node in both bodies
+  double n[3];        ///< unit normal from a to b
+  double area;        ///< of the interface at the node
+  double adhesion;    ///< share of the adhesive strength that remains at this gap
+  double water;       ///< part of the impulse on b along n that pore water takes
+  MPMNodeWalls walls_a, walls_b;
+  bool alike = true;    ///< walls act on the same components of both bodies
+  char left = 0;        ///< bits: components left to the walls, or to contact at the mirror node
+  State state;
+  double normal, tangential[3];    ///< impulses on b so far, along n and in the tangential plane
+
+  /** Component d of the impulse on b. */
+  double impulse(int d) const { return left >> d & 1 ? 0.0 : normal * n[d] + tangential[d]; }
+  /** Begins with no impulse, and this action of walls. */
+  void begin(const MPMNodeWalls &of_a, const MPMNodeWalls &of_b);
+  /** Adds the impulses to the velocities of the bodies. */
+  void push(int dim) const;
+  /** One iteration: the impulse for the present velocities, within the limits of the law.
+   *  neighbors: number of bodies that one body may meet here, by which the mass is divided.
+   *  decided: the state stays (MUSL, second field of velocities). Returns the change of the
+   *  impulse, relative to it. */
+  double iterate(const MPMContactLaw &, int dim, int neighbors, double dt, bool decided);
+
+ private:
+  double approach(int dim, int neighbors, double *u, double &un) const;
+  double limit(const MPMContactLaw &, double mass, int dim, double length, double dt,
+               double &normal);
+};
+
+}    // namespace LAMMPS_NS
+#endif
