@@ -342,7 +342,7 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
     }
 }
 
-// soil whose pores stay full is that without retention, to the last bit
+// soil whose pores stay full is that without retention, to round-off: the compiler contracts the sums of the two differently
 SERIAL_TEST(FullPores, AreAsWithoutRetention)
 {
   const auto scene = [](const char *dries) {
@@ -353,11 +353,12 @@ SERIAL_TEST(FullPores, AreAsWithoutRetention)
         "velocity all set 0 -0.05 0\ntimestep 4e-5\nrun 500\n";
   };
   Scene always(scene("")), dries(scene(DRIES));
-  EXPECT_TRUE(identical(always.gather(), dries.gather()));
+  EXPECT_LT(difference(always.gather(), dries.gather()), 1e-12);
   const auto one = values(always, "pore"), two = values(dries, "pore");
   EXPECT_GT(*std::min_element(one.begin(), one.end()), 0.0);
-  EXPECT_EQ(one, two);
-  EXPECT_EQ(always.fix("water")->compute_scalar(), dries.fix("water")->compute_scalar());
+  for (std::size_t i = 0; i < one.size(); i++) EXPECT_NEAR(two[i] / one[i], 1.0, 1e-12);
+  EXPECT_NEAR(dries.fix("water")->compute_scalar() / always.fix("water")->compute_scalar(), 1.0,
+              1e-10);
 }
 
 // Rain of three times the permeability on dry soil: first all of it goes in, then what full pores let through. No water comes in
