@@ -222,6 +222,7 @@ static double way_of_the_pulse(double s, double zone, double c, double t)
 // a long wave enters the material points: what comes back, what arrives, and when
 SERIAL_TEST(Handshake, LongPulsePasses)
 {
+  LONG_CASE();
   const ScratchFile file("eam", eam_file());
   for (const auto &made : {LJ, embedded(file.name)}) {
     Scene run;
@@ -279,6 +280,7 @@ SERIAL_TEST(Handshake, LongPulsePasses)
 
 SERIAL_TEST(Handshake, UnequalImpedancesReflect)
 {
+  LONG_CASE();
   for (const double r : {0.5, 2.0, 10.0}) {
     const double c = LJ.sound(), at = 90.0 * A0, density = 4.0 / (A0 * A0 * A0);
     const double E = (LJ.C11 - LJ.C12) * (LJ.C11 + 2.0 * LJ.C12) / (LJ.C11 + LJ.C12),
@@ -345,6 +347,7 @@ SERIAL_TEST(Handshake, UnequalImpedancesReflect)
 // uniaxial strain between fixed ends, settled with friction
 SERIAL_TEST(Handshake, SameStressOnBothSides)
 {
+  LONG_CASE();
   const double strain = 0.002, stretch = 1.0 + strain;
   const ScratchFile file("eam", eam_file());
   for (const auto &made : {LJ, embedded(file.name)}) {

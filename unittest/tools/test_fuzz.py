@@ -40,7 +40,7 @@ def fuzz(inputs, scenes, seed):
 
 
 def test_inputs_with_mistakes_and_scenes():
-    fuzz(30, 3, 1)
+    fuzz(12, 1, 1)
 
 
 def test_many_inputs_with_mistakes_and_scenes():
