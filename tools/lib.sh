@@ -309,7 +309,7 @@ configure_project() {
   mkdir -p "$build"
   build=$(cd "$build" && pwd)
   lock "$build/.lock"
-  args="-D LAMMPS_BUILD_DIR=$LAMMPS_BUILD_DIR -D MPM_DEMO=off -D MPM_QUICK=${quick:-off} -D MPM_TEST=$tests $launcher $* ${MPM_CMAKE:-}"
+  args="-D LAMMPS_BUILD_DIR=$LAMMPS_BUILD_DIR -D MPM_DEMO=off -D MPM_TEST=$tests $launcher $* ${MPM_CMAKE:-}"
   : >"$build/build.log"
   [ -e "$build/Makefile" ] && [ "$(cat "$build/.args" 2>/dev/null)" = "$args" ] && return 0
   say "configuring in $build"
