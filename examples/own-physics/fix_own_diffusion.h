@@ -9,9 +9,9 @@
 #ifndef LMP_FIX_OWN_DIFFUSION_H
 #define LMP_FIX_OWN_DIFFUSION_H
 
+#include "base/mpm_state.h"
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
-#include "base/mpm_state.h"
 
 #include <map>
 

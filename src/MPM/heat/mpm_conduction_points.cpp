@@ -13,6 +13,8 @@
 
 #include "atom.h"
 #include "base/mpm_points.h"
+#include "comm.h"
+#include "error.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"

@@ -8,6 +8,7 @@
 
 #include "implicit/mpm_tangent.h"
 
+#include "atom.h"
 #include "field/mpm_field.h"
 #include "material/batch_kernels.h"
 
