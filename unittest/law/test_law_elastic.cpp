@@ -1,4 +1,5 @@
-// labels: unit physics This file is part of the MPM package for LAMMPS, distributed under the GNU
+// labels: unit physics
+// This file is part of the MPM package for LAMMPS, distributed under the GNU
 // General Public License, version 2; see the file LICENSE.
 
 // Hyperelastic laws, isotropic and anisotropic, at a point against closed forms.
