@@ -38,7 +38,7 @@ class MPMTrialContact {
   virtual bool find_carried(MPMField &, std::vector<double> &left) = 0;
   /** force: forces on nodes by loads on the shares inside, [node][dim], which the wall bears.
    *  Redistributes them so that they do no work on motions that the wall leaves free. */
-  virtual void bear_carried(MPMField &, double *force) = 0;
+  virtual void constrain_carried(MPMField &, double *force) = 0;
   /** yes: from now on, acts bring to the wall the material that is held but was not at the wall at
    *  the start of the step. Otherwise acts hold it at rest relative to the wall, like all other
    *  material. Returns whether there is such material on this rank. */
@@ -55,7 +55,7 @@ class MPMTrialContact {
    *  decide(). */
   virtual bool rubs() const { return has_friction(); }
   /** Sets the sums of impulses to zero. */
-  virtual void forget_pushes() = 0;
+  virtual void clear_impulses() = 0;
   /** The sums now are those of nodes at rest, from the motion of walls alone: keeps them as the
    *  base. */
   virtual void take_base() = 0;
@@ -84,7 +84,7 @@ class MPMTrialContact {
   virtual void take_stop() {}
   /** Nodes will have the velocities v after the stage STEP, in which they get this share of the
    *  friction that was found. Valid until then. */
-  virtual void foresee_velocities(const double *v, double share) = 0;
+  virtual void predict_velocities(const double *v, double share) = 0;
 
  protected:
   ~MPMTrialContact() = default;

@@ -476,7 +476,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
   if (motion) surface.share_area(nodes);
 }
 
-void MPMPore::take_off()
+void MPMPore::separate_water()
 {
   if (surface.any()) {
     surface.find_push(nodes, of_flow);
@@ -497,7 +497,7 @@ void MPMPore::take_off()
       }
     }
   }
-  motion->take_off();
+  motion->separate();
 }
 
 /* ----------------------------------------------------------------------

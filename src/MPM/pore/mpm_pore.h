@@ -87,7 +87,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   bool moves_first() const;
   /** Only if the water has inertia: call when nodes have mass, momentum, and forces, summed over
    *  ranks. */
-  void take_off();
+  void separate_water();
   /** Only if the water has inertia: call after take_motion(). */
   void move_water();
   /** Finds the rates of the pressures of nodes. Adds to inflow the volumes of water that come in

@@ -236,7 +236,7 @@ void MPMPoreMotion::sum(std::vector<double> &to, const Wanted &wanted, const Wei
   field.nodes.sum(to.data(), WIDTH, 0, 4);
 }
 
-void MPMPoreMotion::take_off()
+void MPMPoreMotion::separate()
 {
   sum(nodes, nullptr, [&](int i, double &weight, double *vector) {
     weight = share[i];

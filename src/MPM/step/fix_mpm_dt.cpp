@@ -163,7 +163,7 @@ double FixMPMDt::allowed(const Limit &limit) const
   return limit.dt < NO_POINTS.dt ? fraction * limit.dt : NO_POINTS.dt;
 }
 
-double FixMPMDt::of_grains(const Limit &limit) const
+double FixMPMDt::grain_dt(const Limit &limit) const
 {
   return limit.other == NO_GRAIN ? NO_POINTS.dt : allowed(limit);
 }
@@ -232,7 +232,7 @@ void FixMPMDt::setup_pre_force(int)
   ended = false;
   time_at_start = elapsed_time(*update);
   wall_at_start = platform::walltime();
-  const double dt_grains = of_grains(limit);
+  const double dt_grains = grain_dt(limit);
   const bool goes_on = continues && update->dt == dt_left &&
       fabs(allowed(points) - limit_left) <= SAME * limit_left &&
       dt_grains <= (1.0 + SAME) * grains_left;
@@ -381,7 +381,7 @@ void FixMPMDt::note_limits()
 {
   const Limit points = point_limit();
   limit_left = allowed(points);
-  grains_left = of_grains(grain_limit(points));
+  grains_left = grain_dt(grain_limit(points));
 }
 
 void FixMPMDt::post_run()

@@ -88,7 +88,7 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   Limit grain_limit(const Limit &points) const;
   Limit grain_limit(const Limit &points, double longest) const;
   double allowed(const Limit &) const;
-  double of_grains(const Limit &) const;
+  double grain_dt(const Limit &) const;
   void note_limits();
   std::vector<double> saved_options() const;
   Limit smallest(Limit) const;

@@ -95,7 +95,7 @@ void MPMContactSearch::map_region(MPMWallNodes &list, double dt)
 
 void MPMContactSearch::check_gaps(MPMWallNodes &list, double dt)
 {
-  if (first_gap.told()) return;
+  if (first_gap.is_reported()) return;
   map_region(list, dt);
   Grid &grid = list.field.grid;
   const auto now = (double) update->ntimestep;
@@ -116,7 +116,7 @@ void MPMContactSearch::check_gaps(MPMWallNodes &list, double dt)
     first_gap.take({now, -beyond, x[0], x[1], x[2]});
   }
   std::array<double, 5> first;
-  if (!first_gap.tell(world, first) || comm->me) return;
+  if (!first_gap.report(world, first) || comm->me) return;
   error->warning(
       FLERR,
       "Fix mpm/boundary {}: its region {} holds material near {:.6g} {:.6g} {:.6g} across "

@@ -59,7 +59,7 @@ void MPMThinRegions::check(const MPMWallNodes &list, int index)
 void MPMThinRegions::report()
 {
   std::array<double, 5> place;
-  if (!wall.region || !first.tell(world, place)) return;
+  if (!wall.region || !first.report(world, place)) return;
   wall.looks_for_thin_places = false;
   if (comm->me == 0)
     error->warning(

@@ -65,7 +65,7 @@ bool MPMWallTrial::find_carried(MPMField &of, std::vector<double> &left)
 }
 
 /** Spreads the force on each line over its nodes, in the shares of the constraint. */
-void MPMWallTrial::bear_carried(MPMField &of, double *force)
+void MPMWallTrial::constrain_carried(MPMField &of, double *force)
 {
   if (!wall.is_grip) return;
   const int dim = of.lattice.dim;

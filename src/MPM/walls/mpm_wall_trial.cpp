@@ -212,7 +212,7 @@ bool MPMWallTrial::is_deep(const MPMWallNodes &list, std::size_t node) const
 
 /* ---------------------------------------------------------------------- */
 
-void MPMWallTrial::forget_pushes()
+void MPMWallTrial::clear_impulses()
 {
   for (auto &c : constraints) c.impulse = 0.0;
 }

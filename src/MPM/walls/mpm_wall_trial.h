@@ -52,9 +52,9 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   bool close_gaps(bool yes) override;
   void check_arrival() override;
   bool find_carried(MPMField &, std::vector<double> &) override;
-  void bear_carried(MPMField &, double *force) override;
+  void constrain_carried(MPMField &, double *force) override;
   bool has_friction() const override;
-  void forget_pushes() override;
+  void clear_impulses() override;
   void take_base() override;
   void take_forces(double scale) override;
   void add_friction(const double *u, double *force) override;
@@ -64,7 +64,7 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   void correct(const double *du) override;
   bool decide(const double *u, double unbalanced) override;
   void soften(double by) override { soft = by; }
-  void foresee_velocities(const double *v, double share) override
+  void predict_velocities(const double *v, double share) override
   {
     final_velocity = v;
     friction_share = share;
