@@ -44,7 +44,7 @@ void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
   for (auto *action : actions) action->init_action();
   for (auto *other : physics) other->init_physics(*this);
 
-  stages.clear();
+  clear();
   scheme(*this);
 }
 
@@ -53,24 +53,22 @@ void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
 void MPMPlan::each(const std::string &name, const Data &reads, const Data &writes, Each run,
                    Wanted wanted)
 {
-  std::vector<MPMField *> list;
+  std::vector<Part> parts;
   for (auto *field : fields)
-    if (!wanted || wanted(*field)) list.push_back(field);
-  const std::vector<double> seconds(list.size(), 0.0);
-  if (!list.empty()) stages.push_back({name, std::move(run), reads, writes, list, false, seconds});
+    if (!wanted || wanted(*field))
+      parts.push_back({fields.size() > 1 ? field->id() : "", [run, field] {
+                         run(*field);
+                       }});
+  if (!parts.empty()) add(name, reads, writes, std::move(parts));
 }
 
 void MPMPlan::together(const std::string &name, const Data &reads, const Data &writes,
                        const std::function<void()> &run, Wanted wanted)
 {
-  const auto once = [run](MPMField &) {
-    run();
-  };
   const auto wants = [&wanted](const MPMField *field) {
     return !wanted || wanted(*field);
   };
-  if (std::any_of(fields.begin(), fields.end(), wants))
-    stages.push_back({name, once, reads, writes, {fields[0]}, true, {0.0}});
+  if (std::any_of(fields.begin(), fields.end(), wants)) add(name, reads, writes, run);
 }
 
 void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
@@ -109,17 +107,7 @@ void MPMPlan::step()
   for (auto *field : fields)
     if (field->every) waits = field->every->wait() || waits;
   if (waits) return;
-  double time = platform::walltime();
-  for (auto &stage : stages) {
-    for (std::size_t k = 0; k < stage.seconds.size(); k++) {
-      if (observer) observer(stage, *stage.fields[k], false);
-      stage.run(*stage.fields[k]);
-      if (observer) observer(stage, *stage.fields[k], true);
-      const double now = platform::walltime();
-      stage.seconds[k] += now - time;
-      time = now;
-    }
-  }
+  run();
 }
 
 /** Blocks of points first, then those that node actions need next to these. */
@@ -189,7 +177,7 @@ void MPMPlan::find_blocks_now()
 void MPMPlan::start()
 {
   watch->start();
-  for (auto &stage : stages) std::fill(stage.seconds.begin(), stage.seconds.end(), 0.0);
+  clear_costs();
   wall_start = platform::walltime();
   cpu_start = platform::cputime();
   for (auto *field : fields) {
@@ -201,18 +189,10 @@ void MPMPlan::start()
     if (field->fracture_watch) field->fracture_watch->start();
   }
 
-  if (comm->me || std::none_of(fields.begin(), fields.end(), [](auto *field) {
-        return field->options.plan;
-      }))
-    return;
-  std::string text = "MPM plan of a step:\n";
-  for (const auto &stage : stages) {
-    std::string name = stage.name;
-    for (auto *field : stage.fields)
-      if (fields.size() > 1 && !stage.once) name += std::string(" ") + field->id();
-    text += fmt::format("  {:<40} {} -> {}\n", name, stage.reads.text(), stage.writes.text());
-  }
-  utils::logmesg(lmp, text);
+  const bool prints = std::any_of(fields.begin(), fields.end(), [](auto *field) {
+    return field->options.plan;
+  });
+  if (prints && comm->me == 0) utils::logmesg(lmp, "MPM plan of a step:\n" + text());
 }
 
 /* ----------------------------------------------------------------------
@@ -223,9 +203,10 @@ void MPMPlan::start()
 std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) const
 {
   std::vector<Cost> list = {{"sort", field.map->sort_time}};
-  for (const auto &stage : stages)
-    for (std::size_t k = 0; k < stage.fields.size(); k++)
-      if (stage.fields[k] == &field) list.push_back({stage.name, stage.seconds[k]});
+  for (const auto &stage : MPMStageList::list())
+    for (const auto &part : stage.parts)
+      if (part.owner == field.id() || (part.owner.empty() && &field == fields[0]))
+        list.push_back({stage.name, part.seconds});
   for (auto &cost : list) {
     double slowest;
     MPI_Allreduce(&cost.time, &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
