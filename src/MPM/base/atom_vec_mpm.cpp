@@ -32,8 +32,6 @@ static constexpr const char *properties[] = {
     "mpm_F33",      "mpm_stress11", "mpm_stress22", "mpm_stress33", "mpm_stress12", "mpm_stress13",
     "mpm_stress23", "mpm_stress21", "mpm_stress31", "mpm_stress32"};
 
-/* ---------------------------------------------------------------------- */
-
 MPMPoints *MPMPoints::get(Atom *atom, bool create)
 {
   for (auto &field : atom->peratom)
@@ -52,8 +50,6 @@ void MPMPoints::grow(Memory *memory, int nmax)
   F = F.grown(memory, nmax, 9, "atom:mpm_F");
   tau = tau.grown(memory, nmax, 6, "atom:mpm_tau");
 }
-
-/* ---------------------------------------------------------------------- */
 
 AtomVecMPM::AtomVecMPM(LAMMPS *lmp) : AtomVec(lmp)
 {
@@ -77,8 +73,6 @@ AtomVecMPM::~AtomVecMPM()
   points->grow(memory, 0);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void AtomVecMPM::process_args(int narg, char **arg)
 {
   if (narg > 0)
@@ -87,11 +81,9 @@ void AtomVecMPM::process_args(int narg, char **arg)
   setup_fields();
 }
 
-/* ----------------------------------------------------------------------
-   The first set-up after read_restart is when LAMMPS drops what no fix has taken from the file.
-   Fixes of this package come later than this in the set-up. It may be that of another command,
-   before the input has come to its fixes
-------------------------------------------------------------------------- */
+/** The first set-up after read_restart is when LAMMPS drops what no fix has taken from the file.
+ *  Fixes of this package come later than this in the set-up. It may be that of another command,
+ *  before the input has come to its fixes. */
 
 namespace {
 struct Restart : Modify {
@@ -123,11 +115,8 @@ void AtomVecMPM::init()
         left);
 }
 
-/* ----------------------------------------------------------------------
-   set local copies of the arrays, also when this is a sub-style of hybrid. Of other sub-styles that
-   use mass or volume in their own way, only spheres are fine, when they come first
-------------------------------------------------------------------------- */
-
+/** Set local copies of the arrays, also when this is a sub-style of hybrid. Of other sub-styles
+ *  that use mass or volume in their own way, only spheres are fine, when they come first. */
 void AtomVecMPM::grow_pointers()
 {
   rmass = atom->rmass;
@@ -160,28 +149,20 @@ void AtomVecMPM::grow_pointers()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 static double sphere_volume(double r)
 {
   return r > 0.0 ? MathConst::MY_4PI3 * r * r * r : 1.0;
 }
 
-/* ----------------------------------------------------------------------
-   a new atom is no material point until it is given a volume
-   (all other fields are zero here, those of sub-styles before this one are set)
-------------------------------------------------------------------------- */
-
+/** A new atom is no material point until it is given a volume (all other fields are zero here,
+ *  those of sub-styles before this one are set). */
 void AtomVecMPM::create_atom_post(int ilocal)
 {
   if (!after_sphere) rmass[ilocal] = 1.0;
   points->reset(ilocal);
 }
 
-/* ----------------------------------------------------------------------
-   F and stress, wherever an atom goes
-------------------------------------------------------------------------- */
-
+/** F and stress, wherever an atom goes. */
 void AtomVecMPM::copy_bonus(int i, int j, int)
 {
   std::copy_n(points->F[i], 9, points->F[j]);
@@ -212,10 +193,7 @@ double AtomVecMPM::memory_usage_bonus()
   return (double) MPMPoints::size * sizeof(double) * atom->nmax;
 }
 
-/* ----------------------------------------------------------------------
-   density and volume from the data file to mass
-------------------------------------------------------------------------- */
-
+/** Density and volume from the data file to mass. */
 void AtomVecMPM::data_atom_post(int ilocal)
 {
   const double volume = vfrac[ilocal];
@@ -244,11 +222,8 @@ void AtomVecMPM::data_atom_post(int ilocal)
   points->reset(ilocal);
 }
 
-/* ----------------------------------------------------------------------
-   mass to density for AtomVec::pack_data()
-   after a sphere style, rmass is mass / (volume of the sphere), and radius the diameter
-------------------------------------------------------------------------- */
-
+/** Mass to density for AtomVec::pack_data() after a sphere style, rmass is mass / (volume of the
+ *  sphere), and radius the diameter. */
 void AtomVecMPM::pack_data_pre(int ilocal)
 {
   rmass_one = rmass[ilocal];
@@ -263,29 +238,20 @@ void AtomVecMPM::pack_data_pre(int ilocal)
   rmass[ilocal] = rmass_one * sphere / vfrac[ilocal];
 }
 
-/* ----------------------------------------------------------------------
-   undo pack_data_pre(); a sphere style has restored rmass already
-------------------------------------------------------------------------- */
-
+/** Undo pack_data_pre(); a sphere style has restored rmass already. */
 void AtomVecMPM::pack_data_post(int ilocal)
 {
   if (!after_sphere) rmass[ilocal] = rmass_one;
 }
 
-/* ----------------------------------------------------------------------
-   index of a property for compute property/atom, -1: unknown
-------------------------------------------------------------------------- */
-
+/** Index of a property for compute property/atom, -1: unknown. */
 int AtomVecMPM::property_atom(const std::string &name)
 {
   const auto *const end = std::end(properties), *const found = std::find(properties, end, name);
   return found == end ? -1 : (int) (found - properties);
 }
 
-/* ----------------------------------------------------------------------
-   pack a property of the atoms of a group, 0 for those that are no material points
-------------------------------------------------------------------------- */
-
+/** Pack a property of the atoms of a group, 0 for those that are no material points. */
 void AtomVecMPM::pack_property_atom(int index, double *buf, int nvalues, int groupbit)
 {
   for (int i = 0; i < atom->nlocal; i++) {

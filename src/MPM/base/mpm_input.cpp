@@ -108,12 +108,9 @@ static std::string read_words(LAMMPS *lmp, const std::string &name, std::string 
   return "";
 }
 
-/* ----------------------------------------------------------------------
-   definition in a file with the header of a LAMMPS potential file:
-   rank 0 reads words and their line numbers, all ranks parse. What follows the file name in the
-   input continues the definition: more parts, or options of the last part in the file.
-------------------------------------------------------------------------- */
-
+/** Definition in a file with the header of a LAMMPS potential file: rank 0 reads words and their
+ *  line numbers, all ranks parse. What follows the file name in the input continues the definition:
+ *  more parts, or options of the last part in the file. */
 static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &caller, int first,
                                            int narg, char **arg)
 {
@@ -145,8 +142,6 @@ static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &calle
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::string &caller,
                                                    int first, int narg, char **arg)
 {
@@ -166,10 +161,7 @@ std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::strin
   }
 }
 
-/* ----------------------------------------------------------------------
-   sets, groups, and data of a mesh, with their names
-------------------------------------------------------------------------- */
-
+/** Sets, groups, and data of a mesh, with their names. */
 static void broadcast_named(Mesh &mesh, MPI_Comm world)
 {
   std::vector<int> counts = {(int) mesh.sets.size(), (int) mesh.data.size()};
@@ -197,8 +189,6 @@ static void broadcast_named(Mesh &mesh, MPI_Comm world)
     broadcast(data.values, world);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** What prepare() makes of the mesh in a file, on all ranks. */
 static Mesh read_on_all(LAMMPS *lmp, const std::string &file, const std::string &user, int iarg,
@@ -238,8 +228,6 @@ Mesh LAMMPS_NS::read_whole_mesh(LAMMPS *lmp, const std::string &file, const std:
     mesh.orient(lmp->domain->dimension);
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPM_NS::register_laws(void *ptr, const LawVersion &version, const PluginLaw *laws, int n)
 {

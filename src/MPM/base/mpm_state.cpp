@@ -17,8 +17,6 @@
 
 using namespace LAMMPS_NS;
 
-/* ---------------------------------------------------------------------- */
-
 MPMPointState::~MPMPointState()
 {
   for (auto &array : arrays) {
@@ -104,8 +102,6 @@ int MPMPointState::unpack(int i, const double *buf)
   return size();
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixMPMState::~FixMPMState()
 {
   if (!callbacks || !modify) return;
@@ -161,8 +157,6 @@ void FixMPMState::unpack_restart(int i, int nth)
   }
   state.unpack(i, values);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void LAMMPS_NS::keep_totals(MPI_Comm world, double *values, int n)
 {

@@ -43,8 +43,6 @@ using namespace MPM_NS;
 // mean square distance of points around a node, in node spacings squared, that allows for a slope
 static constexpr double MIN_EXTENT = 1.0e-4;
 
-/* ---------------------------------------------------------------------- */
-
 MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
     Pointers(lmp), field(field)
 {
@@ -73,8 +71,6 @@ uint64_t MPMAffine::velocity_hash() const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMAffine::check_velocities()
 {
   if (!velocities.known || velocity_hash() == velocities.hash) return;
@@ -84,8 +80,6 @@ void MPMAffine::check_velocities()
       if (Q) memset(Q[i], 0, poly_size(field.lattice.dim) * sizeof(double));
     }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMAffine::fit()
 {
@@ -177,12 +171,9 @@ void MPMAffine::fit()
     }
 }
 
-/* ----------------------------------------------------------------------
-   torques that pair styles exert on points (tangential forces act on the surface of a point) change
-   the angular momentum of its affine field, m D (C - C^T), D = h^2/4 or h^2/3; in the total frame
-   m D (C F^T - F C^T)
-------------------------------------------------------------------------- */
-
+/** Torques that pair styles exert on points (tangential forces act on the surface of a point)
+ *  change the angular momentum of its affine field, m D (C - C^T), D = h^2/4 or h^2/3; in the total
+ *  frame m D (C F^T - F C^T). */
 bool MPMAffine::takes_torques() const
 {
   const Shape shape = field.options.shape;
@@ -221,14 +212,11 @@ void MPMAffine::add_torques()
     }
 }
 
-/* ----------------------------------------------------------------------
-   What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where
-   < > are means with the shape functions N_ip over the places r of nodes from the point, and F is
-   that of the total frame, else 1. <r r> is D in the moving least squares form; with other
-   functions it depends on where the point is in its cell. Bilinear modes (PolyPIC) have none, as
-   products of coordinates are orthogonal to linear functions.
-------------------------------------------------------------------------- */
-
+/** What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where
+ *  < > are means with the shape functions N_ip over the places r of nodes from the point, and F is
+ *  that of the total frame, else 1. <r r> is D in the moving least squares form; with other
+ *  functions it depends on where the point is in its cell. Bilinear modes (PolyPIC) have none, as
+ *  products of coordinates are orthogonal to linear functions. */
 void MPMAffine::angular_momentum(int i, double L[3]) const
 {
   L[0] = L[1] = L[2] = 0.0;

@@ -43,21 +43,16 @@ static constexpr double MAX_SIZE = 0.5;
 // of the places of corners, in node spacings
 static constexpr double ROUND_OFF = 1.0e-9;
 
-/* ---------------------------------------------------------------------- */
-
 double LAMMPS_NS::half_size(const MPMField &field, int i)
 {
   const double section = field.frame->section(i);
   return 0.5 * (field.lattice.dim == 3 ? cbrt(section) : sqrt(section)) / field.lattice.h;
 }
 
-/* ----------------------------------------------------------------------
-   Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous
-   one follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along
-   axis d those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and
-   rotation this is F_dd l_d, and a cube that just turns keeps its size.
-------------------------------------------------------------------------- */
-
+/** Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous
+ *  one follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along
+ *  axis d those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and
+ *  rotation this is F_dd l_d, and a cube that just turns keeps its size. */
 void MPMBoxes::update()
 {
   sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
@@ -83,12 +78,9 @@ void MPMBoxes::size_of(int i, double *size) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   a ring has its initial size at x/F_zz, which is its initial radius until it moves only: with
-   stress apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any
-   more
-------------------------------------------------------------------------- */
-
+/** A ring has its initial size at x/F_zz, which is its initial radius until it moves only: with
+ *  stress apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any
+ *  more. */
 bool MPMBoxes::is_too_large(int i) const
 {
   const bool waits = field.every && field.every->displacement(i, 0) != 0.0;
@@ -106,8 +98,6 @@ double MPMBoxes::smallest() const
     if (field.is_point(i)) least = std::min(least, half_size(field, i));
   return least;
 }
-
-/* ---------------------------------------------------------------------- */
 
 MPMCpdi::MPMCpdi(LAMMPS *lmp, MPMField &field, MPMPointState &state) : Pointers(lmp), field(field)
 {
@@ -197,8 +187,6 @@ template <int DIM> static void reach_of_corners(const double *x, double *low, do
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 double MPMCpdi::corners_of(int i, double *x, double *w, double *g) const
 {
   const int n = 1 << field.lattice.dim;
@@ -227,11 +215,8 @@ void MPMCpdi::reach(int i, double low[3], double high[3]) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   a corner may be one block side less one cell away from its point, or else it may be beyond the
-   tile wherever the point is in its block; one that is nowhere is at no distance
-------------------------------------------------------------------------- */
-
+/** A corner may be one block side less one cell away from its point, or else it may be beyond the
+ *  tile wherever the point is in its block; one that is nowhere is at no distance. */
 void MPMCpdi::limit(int i)
 {
   const int room = field.grid.side - 1;
@@ -257,8 +242,6 @@ void MPMCpdi::limit(int i)
   for (int k = 0; k < size(); k++) domain[k] *= scale;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMCpdi::check_corners()
 {
   const int n = 1 << field.lattice.dim;
@@ -271,8 +254,6 @@ void MPMCpdi::check_corners()
     if (field.options.bad == MPMFieldOptions::WARN) corners_of_box(i, corners[i]);
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMCpdi::update()
 {
@@ -338,11 +319,8 @@ void MPMCpdi::update()
   warned = true;
 }
 
-/* ----------------------------------------------------------------------
-   points have corners if create_points elements gave them or the fix has moved them before; they go
-   with the fix, when it is defined again
-------------------------------------------------------------------------- */
-
+/** Points have corners if create_points elements gave them or the fix has moved them before; they
+ *  go with the fix, when it is defined again. */
 void MPMCpdi::tell_of_boxes(bigint nboxes, bigint ndeformed)
 {
   const bigint mine[2] = {nboxes, ndeformed};

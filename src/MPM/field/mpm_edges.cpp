@@ -28,8 +28,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
-
 void MPMEdges::check() const
 {
   for (int a = 0; a < field.lattice.dim; a++)
@@ -40,8 +38,6 @@ void MPMEdges::check() const
                    "change spacing or origin",
                    field.id(), "xyz"[a], side ? "hi" : "lo");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMEdges::find(bool without_outside)
 {
@@ -85,8 +81,6 @@ bool MPMEdges::face_on_nodes(int a, int side, int &plane) const
   plane = (int) std::lround(at);
   return std::fabs(at - plane) <= ON_NODE;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMEdges::fold(double *nodes, int nreal, int lane, int nlane) const
 {

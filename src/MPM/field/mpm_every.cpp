@@ -23,18 +23,13 @@
 
 using namespace LAMMPS_NS;
 
-/* ---------------------------------------------------------------------- */
-
 MPMEvery::MPMEvery(LAMMPS *lmp, MPMField &field, MPMPointState &state) : Pointers(lmp), field(field)
 {
   state.declare(waiting, "mpm:waiting", width());
 }
 
-/* ----------------------------------------------------------------------
-   add forces, and move the points on, or to their place on the lattice when it is time for the
-   cycle. Points that have not waited before are where they are at the start of these steps
-------------------------------------------------------------------------- */
-
+/** Add forces, and move the points on, or to their place on the lattice when it is time for the
+ *  cycle. Points that have not waited before are where they are at the start of these steps. */
 bool MPMEvery::wait()
 {
   const int every = field.options.every;
@@ -70,11 +65,8 @@ bool MPMEvery::wait()
   return progress.waited < every;
 }
 
-/* ----------------------------------------------------------------------
-   from their new place on the lattice, which they pass in the middle of the next forces to be added
-   up, to where they are when the first of these acts
-------------------------------------------------------------------------- */
-
+/** From their new place on the lattice, which they pass in the middle of the next forces to be
+ *  added up, to where they are when the first of these acts. */
 void MPMEvery::finish()
 {
   const double before = 0.5 * (progress.elapsed - update->dt);
@@ -90,10 +82,7 @@ void MPMEvery::finish()
   progress = {};
 }
 
-/* ----------------------------------------------------------------------
-   it has left points on the lattice or near to it: they go on from there like new ones
-------------------------------------------------------------------------- */
-
+/** It has left points on the lattice or near to it: they go on from there like new ones. */
 void MPMEvery::forget_broken_step()
 {
   if (progress.waited < field.options.every) return;

@@ -49,8 +49,6 @@ static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMField
   return lattice;
 }
 
-/* ---------------------------------------------------------------------- */
-
 MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMPointState &state) :
     Pointers(lmp), chosen(options), fix(fix), grid(lattice_of(*domain, h, options)),
     lattice(grid.lattice), nodes(lmp, *this, grid), points(MPMPoints::get(atom)),
@@ -72,8 +70,6 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
 
 MPMField::~MPMField() = default;
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<MPMField *> MPMField::all(LAMMPS *lmp)
 {
   std::vector<MPMField *> list;
@@ -86,8 +82,6 @@ MPMField *MPMField::find(LAMMPS *lmp, const std::string &id)
   auto *ifix = dynamic_cast<MPMFieldOwner *>(lmp->modify->get_fix_by_id(id));
   return ifix ? ifix->field.get() : nullptr;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMField::check_box()
 {
@@ -130,8 +124,6 @@ void MPMField::check_box()
                "below x = 0 or be periodic along x");
   if (nodes.edges) nodes.edges->check();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMField::init(MPMPlan *plan_of_all)
 {
@@ -178,13 +170,10 @@ void MPMField::find_materials()
   work.history.resize((std::size_t) nhistory * BATCH);
 }
 
-/* ----------------------------------------------------------------------
-   Velocities of nodes that were mapped back have contact decided by those of the step, and no
-   impulse of their own. When points moved with them, a tool without friction that was drawn through
-   a body felt nearly twice its force, and a cone that is a separating wall 5 % too little at 1.2
-   cells of depth
-------------------------------------------------------------------------- */
-
+/** Velocities of nodes that were mapped back have contact decided by those of the step, and no
+ *  impulse of their own. When points moved with them, a tool without friction that was drawn
+ *  through a body felt nearly twice its force, and a cone that is a separating wall 5 % too little
+ *  at 1.2 cells of depth. */
 static bool is_in_contact(const MPMField &field)
 {
   const auto actions = find_fixes<MPMNodeAction>(field.lmp);
@@ -193,12 +182,9 @@ static bool is_in_contact(const MPMField &field)
   });
 }
 
-/* ----------------------------------------------------------------------
-   Long records of nodes keep forces and old velocities apart: the ledger and some node actions need
-   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves
-   domains with velocities that were mapped back, knows long records only
-------------------------------------------------------------------------- */
-
+/** Long records of nodes keep forces and old velocities apart: the ledger and some node actions
+ *  need them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves
+ *  domains with velocities that were mapped back, knows long records only. */
 void MPMField::choose_kernels()
 {
   const bool split = ledger.on || keep_old || keep_old_now || options.heat ||
@@ -233,8 +219,6 @@ void MPMField::keep_old_velocities_now(bool yes)
   choose_kernels();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMField::count_step()
 {
   auto &counts = counts_of_run;
@@ -244,8 +228,6 @@ void MPMField::count_step()
   counts.steps++;
   counts.point_steps += map->npoints();
 }
-
-/* ---------------------------------------------------------------------- */
 
 const char *MPMField::id() const
 {
@@ -271,8 +253,6 @@ FixMPMMaterial *MPMField::material_of(int i) const
   return nullptr;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double MPMField::step_dt() const
 {
   return every ? every->step_dt() : update->dt;
@@ -282,8 +262,6 @@ int MPMField::steps_to_next() const
 {
   return every ? every->steps_to_next() : 1;
 }
-
-/* ---------------------------------------------------------------------- */
 
 PointRows MPMField::rows() const
 {
@@ -349,8 +327,6 @@ double MPMField::memory_usage() const
     bytes += list->capacity() * sizeof(double);
   return bytes;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
                              const OptionRules &rules)

@@ -36,13 +36,10 @@ bool MPMField::has_contact() const
   });
 }
 
-/* ----------------------------------------------------------------------
-   Fixes can be defined in any order, and come and go between runs: this is found anew for each run.
-   Where bodies touch by fix mpm/contact, edges give way more with gradients (a block of 6 cells on
-   a base sinks by 14 % more than with one lattice for both, in the place of 8 %), and pressures of
-   pore water scatter more
-------------------------------------------------------------------------- */
-
+/** Fixes can be defined in any order, and come and go between runs: this is found anew for each
+ *  run. Where bodies touch by fix mpm/contact, edges give way more with gradients (a block of 6
+ *  cells on a base sinks by 14 % more than with one lattice for both, in the place of 8 %), and
+ *  pressures of pore water scatter more. */
 void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
 {
   const bool alone = !has_contact() && find_fixes<MPMPorePressure>(lmp).empty();

@@ -6,20 +6,18 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   The reference configuration of the total frame, and its updates.
-
-   With reference update S, the present configuration becomes the reference one when the ratio of
-   the principal stretches of some point since the last time is above S: X = x and R = F, the
-   deformation gradient then. What happens on the lattice knows the deformation since then only, F_R
-   = F R^-1, while laws see all of F. As V0 is that of the undeformed body,
-
-     f_i = -sum V0 tau F_R^-T grad N,   F <- F + dt (grad v) R
-
-   are the equations of a body with the initial volume V0 det R and the deformation gradient F_R.
-   The affine matrix C, the gradient with respect to X, becomes C F_R^-1, and so do the gradients of
-   other physics. Stress, velocities, and energies of points do not change.
-------------------------------------------------------------------------- */
+/* The reference configuration of the total frame, and its updates.
+ *
+ *  With reference update S, the present configuration becomes the reference one when the ratio of
+ *  the principal stretches of some point since the last time is above S: X = x and R = F, the
+ *  deformation gradient then. What happens on the lattice knows the deformation since then only,
+ *  F_R = F R^-1, while laws see all of F. As V0 is that of the undeformed body,
+ *
+ *    f_i = -sum V0 tau F_R^-T grad N,   F <- F + dt (grad v) R
+ *
+ *  are the equations of a body with the initial volume V0 det R and the deformation gradient F_R.
+ *  The affine matrix C, the gradient with respect to X, becomes C F_R^-1, and so do the gradients
+ *  of other physics. Stress, velocities, and energies of points do not change. */
 
 #include "field/mpm_frame_total.h"
 
@@ -42,8 +40,6 @@ using namespace MPM_NS;
 
 static constexpr int CHECK_EVERY = 10;    // steps between looks at the distortion
 
-/* ---------------------------------------------------------------------- */
-
 MPMFrameTotal::MPMFrameTotal(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
     MPMFrame(lmp, field)
 {
@@ -57,11 +53,8 @@ MPMFrameTotal::MPMFrameTotal(LAMMPS *lmp, MPMField &field, MPMPointState &state)
     });
 }
 
-/* ----------------------------------------------------------------------
-   the reference position of a point is where it is at the start of its first run, so that commands
-   which place or displace points can be used before
-------------------------------------------------------------------------- */
-
+/** The reference position of a point is where it is at the start of its first run, so that commands
+ *  which place or displace points can be used before. */
 void MPMFrameTotal::setup()
 {
   tagint deformed = 0, deformed_all;
@@ -83,11 +76,8 @@ void MPMFrameTotal::setup()
         field.id(), deformed_all);
 }
 
-/* ----------------------------------------------------------------------
-   The first Piola-Kirchhoff stress is made here, a batch at a time: to read F and tau costs less
-   than to write and read another matrix
-------------------------------------------------------------------------- */
-
+/** The first Piola-Kirchhoff stress is made here, a batch at a time: to read F and tau costs less
+ *  than to write and read another matrix. */
 void MPMFrameTotal::forces(PointRows &rows, int first, int n, ForceRows &room) const
 {
   double F[BATCH][3][3];
@@ -95,8 +85,6 @@ void MPMFrameTotal::forces(PointRows &rows, int first, int n, ForceRows &room) c
   field.batch_kernels->first_piola(n, R ? &F[0][0][0] : rows.F, rows.tau, room.P);
   rows.P = room.P;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMFrameTotal::lattice_F(int i, double F[3][3]) const
 {
@@ -130,11 +118,8 @@ static void multiply(int dim, double *A, const double *M)
   memcpy(A, product, dim * dim * sizeof(double));
 }
 
-/* ----------------------------------------------------------------------
-   gradients with respect to X, column-major, of the points first ... become those with respect to
-   the undeformed body: L <- L R, with the mean motion that nodes do not have
-------------------------------------------------------------------------- */
-
+/** Gradients with respect to X, column-major, of the points first ... become those with respect to
+ *  the undeformed body: L <- L R, with the mean motion that nodes do not have. */
 void MPMFrameTotal::refer_gradients(int first, int n, double *L) const
 {
   const int dim = field.lattice.dim;
@@ -185,12 +170,9 @@ static double largest_eigenvalue(double B[3][3])
   return mean + 2.0 * p * cos(acos(std::max(-1.0, std::min(1.0, r))) / 3.0);
 }
 
-/* ----------------------------------------------------------------------
-   smallest and largest principal stretch of a point since its reference configuration: singular
-   values of F, in 2d of its part in the plane; not eigenvalues, which tell nothing when the body
-   has turned. 3d: the roots of the largest eigenvalues of (F F^T)^-1 and F F^T
-------------------------------------------------------------------------- */
-
+/** Smallest and largest principal stretch of a point since its reference configuration: singular
+ *  values of F, in 2d of its part in the plane; not eigenvalues, which tell nothing when the body
+ *  has turned. 3d: the roots of the largest eigenvalues of (F F^T)^-1 and F F^T. */
 void MPMFrameTotal::stretches(int i, double &smallest, double &largest) const
 {
   double f[3][3], g[3][3], B[3][3], inverse[3][3];
@@ -227,11 +209,8 @@ double MPMFrameTotal::speed(int i, double &c, double known) const
   return c / least;
 }
 
-/* ----------------------------------------------------------------------
-   is it time for a new reference configuration? It is taken where points have just been sorted to
-   ranks, in this step. The steps of this look do not depend on when the run has started.
-------------------------------------------------------------------------- */
-
+/** Is it time for a new reference configuration? It is taken where points have just been sorted to
+ *  ranks, in this step. The steps of this look do not depend on when the run has started. */
 void MPMFrameTotal::end_of_step()
 {
   if (!R || update->ntimestep % CHECK_EVERY >= field.options.every) return;
@@ -246,8 +225,6 @@ void MPMFrameTotal::end_of_step()
   refer_anew = worst_all > field.options.most_distorted;
   if (refer_anew) field.fix.next_reneighbor = update->ntimestep;
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMFrameTotal::renew_places()
 {

@@ -6,15 +6,13 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   The kinetic energy of a node changes in a step by all impulses on it times the mean of its old
-   and its new velocity. The part of a tangential impulse J_t between bodies of relative velocity u
-   is J_t . (u_old + u_new)/2, and what slides loses that as heat, exactly. With the velocities just
-   before and after the impulse it would be more: before it, the shear stress has accelerated the
-   node, by tau dt/(rho h), which is not small against the sliding velocity in stiff bodies, and
-   which friction takes back in each step. Where bodies stick there is no heat: what is lost there
-   is numerical, and of the order of the step.
-------------------------------------------------------------------------- */
+/* The kinetic energy of a node changes in a step by all impulses on it times the mean of its old
+ *  and its new velocity. The part of a tangential impulse J_t between bodies of relative velocity u
+ *  is J_t . (u_old + u_new)/2, and what slides loses that as heat, exactly. With the velocities
+ *  just before and after the impulse it would be more: before it, the shear stress has accelerated
+ *  the node, by tau dt/(rho h), which is not small against the sliding velocity in stiff bodies,
+ *  and which friction takes back in each step. Where bodies stick there is no heat: what is lost
+ *  there is numerical, and of the order of the step. */
 
 #include "field/mpm_friction_heat.h"
 
@@ -39,8 +37,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
-
 void MPMFrictionHeatOptions::declare(Options &o, const char *yes, const char *first)
 {
   using namespace option;
@@ -59,8 +55,6 @@ MPMFrictionHeat::MPMFrictionHeat(LAMMPS *lmp, const MPMFrictionHeatOptions &opti
     Pointers(lmp), options(options)
 {
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Is an axis neither in the plane nor normal to it? */
 static bool leaves_plane(const Conduction &c)
@@ -195,8 +189,6 @@ void MPMFrictionHeat::map_tensor(Body &body)
                         n[a][ROW[dim - 2][first + j]] * n[a][COLUMN[dim - 2][first + j]];
               });
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::size_t MPMFrictionHeat::node_of(const Body &body, const double *record) const
 {

@@ -30,8 +30,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
-
 std::string MPMGuard::describe(int i) const
 {
   const double *x = atom->x[i], *v = atom->v[i];
@@ -39,8 +37,6 @@ std::string MPMGuard::describe(int i) const
                      "and J = {:.6g}",
                      atom->tag[i], x[0], x[1], x[2], v[0], v[1], v[2], field.points->jacobian(i));
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &cure,
                             const std::string &hint)
@@ -51,8 +47,6 @@ void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &c
     error->warning(FLERR, "{} {} at step {}: {}", describe(i), what, update->ntimestep, cure);
   bad_points.push_back(atom->tag[i]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::check_positions()
 {
@@ -68,8 +62,6 @@ void MPMGuard::check_positions()
   });
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMGuard::handle_bad_points()
 {
   if (field.options.bad == MPMFieldOptions::ERROR && !may_delete()) return;
@@ -80,8 +72,6 @@ void MPMGuard::handle_bad_points()
   if (!deletes) bad_points.clear();
   if ((all[0] && deletes) || all[1]) field.fix.next_reneighbor = update->ntimestep;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::wrap_far_points()
 {
@@ -100,8 +90,6 @@ void MPMGuard::wrap_far_points()
     if (most > 1.5 && most < LIMIT) domain->remap(atom->x[i], atom->image[i]);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::check_inside_box()
 {
@@ -134,10 +122,8 @@ void MPMGuard::check_inside_box()
   if (field.options.delete_failed) delete_points(failed_points, false);
 }
 
-/* ----------------------------------------------------------------------
-   LAMMPS reports the number of lost atoms with thermodynamic output, but not which ones are lost
-------------------------------------------------------------------------- */
-
+/** LAMMPS reports the number of lost atoms with thermodynamic output, but not which ones are
+ *  lost. */
 void MPMGuard::tell_lost_atoms() const
 {
   if (atom->natoms <= npoints || output->thermo->lostflag == Thermo::IGNORE) return;
@@ -174,8 +160,6 @@ void MPMGuard::tell_lost_atoms() const
                    all, update->ntimestep, first_all, state_all[0], state_all[1], state_all[2],
                    state_all[3], state_all[4], state_all[5]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
 {

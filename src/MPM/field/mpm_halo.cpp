@@ -61,8 +61,6 @@ static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outb
   return nout;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &whole)
 {
   std::vector<uint64_t> wanted;
@@ -187,8 +185,6 @@ void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
   requests.resize(2 * peers.size());
 }
 
-/* ---------------------------------------------------------------------- */
-
 /** Calls f(width), width() being nlane, which the compiler knows for the records of the step. */
 template <class F> static void with_width(int nlane, const F &f)
 {
@@ -249,8 +245,6 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
   }
   MPI_Waitall(npeers, requests.data() + npeers, MPI_STATUSES_IGNORE);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMHalo::memory_usage() const
 {

@@ -25,8 +25,6 @@
 
 using namespace LAMMPS_NS;
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
 {
   fields = MPMField::all(lmp);
@@ -47,8 +45,6 @@ void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
   clear();
   scheme(*this);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPlan::each(const std::string &name, const Data &reads, const Data &writes, Each run,
                    Wanted wanted)
@@ -87,8 +83,6 @@ void MPMPlan::place(Place at)
 {
   for (auto *other : physics) other->add_stages(*this, at);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPlan::act_on_nodes(MPMNodeAction::Stage stage)
 {
@@ -172,8 +166,6 @@ void MPMPlan::find_blocks_now()
     find_blocks();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPlan::start()
 {
   watch->start();
@@ -195,11 +187,8 @@ void MPMPlan::start()
   if (prints && comm->me == 0) utils::logmesg(lmp, "MPM plan of a step:\n" + text());
 }
 
-/* ----------------------------------------------------------------------
-   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts
-   come before the step. Without keyword plan, stages of the same name are one entry
-------------------------------------------------------------------------- */
-
+/** A stage costs what it costs the slowest rank; stages of all fields count for the first one.
+ *  Sorts come before the step. Without keyword plan, stages of the same name are one entry. */
 std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) const
 {
   std::vector<Cost> list = {{"sort", field.map->sort_time}};

@@ -41,8 +41,6 @@ void LAMMPS_NS::load_state(MPMField &field, Batch &b, const int *list, int n,
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisitor &visit)
 {
   const Atom *atom = lmp->atom;

@@ -42,8 +42,6 @@ static constexpr double DECAYED = 1.6;
 // 3 %
 static constexpr double COST_OF_SORT = 40.0;
 
-/* ---------------------------------------------------------------------- */
-
 MPMPointMap::MPMPointMap(LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field)
 {
   for (double **memory_of : {&tile, &tile_load}) {
@@ -64,11 +62,8 @@ std::size_t MPMPointMap::tile_reals() const
   return 8 * (field.domains ? domain_tile_nodes(field.lattice.dim) : MAX_TILE_NODES);
 }
 
-/* ----------------------------------------------------------------------
-   points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
-   a tile has room for a drift of one cell
-------------------------------------------------------------------------- */
-
+/** Points drift at most half a skin between rebuilds when LAMMPS checks distances each step; a tile
+ *  has room for a drift of one cell. */
 void MPMPointMap::setup()
 {
   watch_drift = !field.frame->is_total() && !field.domains &&
@@ -86,17 +81,13 @@ void MPMPointMap::check_drift()
   drifted = 0;
 }
 
-/* ----------------------------------------------------------------------
-   a sort is worth it when the disorder since the last one is more than what little there always is,
-   and has cost as much: whatever comes next, this takes at most twice the time of the best choice
-------------------------------------------------------------------------- */
-
+/** A sort is worth it when the disorder since the last one is more than what little there always
+ *  is, and has cost as much: whatever comes next, this takes at most twice the time of the best
+ *  choice. */
 bool MPMPointMap::wants_sort() const
 {
   return switches > DECAYED * sorted_switches + 100 && extra_disorder > COST_OF_SORT * npoints();
 }
-
-/* ---------------------------------------------------------------------- */
 
 namespace {
 /** Base node of a position and its coordinates there, in cells; relative to the lattice. */
@@ -137,11 +128,8 @@ void MPMPointMap::tile_base(const ActiveBlock &a, int base[3]) const
   for (int d = 0; d < 3; d++) base[d] = grid.side * grid.blocks[a.slot].b[d] - field.kernel.margin;
 }
 
-/* ----------------------------------------------------------------------
-   the nodes of the next block go towards the cache: in a large run they are not there, and nothing
-   else would hide that
-------------------------------------------------------------------------- */
-
+/** The nodes of the next block go towards the cache: in a large run they are not there, and nothing
+ *  else would hide that. */
 void MPMPointMap::load_tile(const ActiveBlock &a, int base[3], bool mean)
 {
   Grid &grid = field.grid;
@@ -165,8 +153,6 @@ double MPMPointMap::memory_usage() const
   return 2.0 * tile_reals() * sizeof(double) + runs.capacity() * sizeof(Run) +
       active.capacity() * sizeof(ActiveBlock);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPointMap::find_blocks()
 {
@@ -281,8 +267,6 @@ void MPMPointMap::find_blocks()
     }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPointMap::finish_blocks()
 {
   field.grid.close_periodic();
@@ -303,11 +287,8 @@ void MPMPointMap::finish_blocks()
   }
 }
 
-/* ----------------------------------------------------------------------
-   order the points by block, material, cell and tag, the data itself moved; other atoms follow.
-   Tags make the order, and with it all sums, independent of what happened before.
-------------------------------------------------------------------------- */
-
+/** Order the points by block, material, cell and tag, the data itself moved; other atoms follow.
+ *  Tags make the order, and with it all sums, independent of what happened before. */
 void MPMPointMap::sort()
 {
   const double start = platform::walltime();

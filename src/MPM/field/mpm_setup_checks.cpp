@@ -63,11 +63,8 @@ void MPMSetupChecks::run(When when, bool first)
     if (check.when == when && (first || !check.of_all)) (this->*check.look)();
 }
 
-/* ----------------------------------------------------------------------
-   a point must have one integrator; fixes of this style may hide from LAMMPS that they are one,
-   see init()
-------------------------------------------------------------------------- */
-
+/** A point must have one integrator; fixes of this style may hide from LAMMPS that they are one,
+ *  see init(). */
 void MPMSetupChecks::integrators()
 {
   refuse_other_integrators(lmp, field.fix);
@@ -120,15 +117,12 @@ void MPMSetupChecks::locking()
   }
 }
 
-/* ----------------------------------------------------------------------
-   In the total frame points stay at their positions in their cells, even where round-off decides
-   about strain and stress. Linear and Bernstein functions have gradients that jump at faces of
-   cells. Those of quadratic functions do not, but near the end of one (grad N)^2/N does not vanish.
-   Forces have one factor grad N, and the strain from new velocities has another one: a node that
-   only this point reaches, with the mass m_p N, changes its strain by an amount that does not
-   depend on N, unless N is zero. Only the outermost points have such nodes.
-------------------------------------------------------------------------- */
-
+/** In the total frame points stay at their positions in their cells, even where round-off decides
+ *  about strain and stress. Linear and Bernstein functions have gradients that jump at faces of
+ *  cells. Those of quadratic functions do not, but near the end of one (grad N)^2/N does not
+ *  vanish. Forces have one factor grad N, and the strain from new velocities has another one: a
+ *  node that only this point reaches, with the mass m_p N, changes its strain by an amount that
+ *  does not depend on N, unless N is zero. Only the outermost points have such nodes. */
 void MPMSetupChecks::places()
 {
   constexpr double NEAR = 1.0e-9;    // in node spacings
@@ -179,8 +173,6 @@ void MPMSetupChecks::places()
     return;
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMSetupChecks::points()
 {
@@ -267,12 +259,9 @@ void MPMSetupChecks::rings()
         field.id());
 }
 
-/* ----------------------------------------------------------------------
-   Neighbor lists of points and grains: the two settings that make them slow. Pairs of points only
-   cost time, unless pair style mpm/penalty uses them; and with bins of the size
-   of a grain, each point tests all points within reach of a grain.
-------------------------------------------------------------------------- */
-
+/** Neighbor lists of points and grains: the two settings that make them slow. Pairs of points only
+ *  cost time, unless pair style mpm/penalty uses them; and with bins of the size of a grain, each
+ *  point tests all points within reach of a grain. */
 void MPMSetupChecks::neighbors()
 {
   constexpr bigint MANY = 1000;    // least number of points for a warning
@@ -328,8 +317,6 @@ void MPMSetupChecks::neighbors()
                    sqrt(cut_others / std::max(cut_points, 1.0e-300)));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMSetupChecks::lists_after_restart()
 {
   if (!lists_of_file) return;
@@ -355,11 +342,8 @@ MPMSetupChecks::Lists MPMSetupChecks::lists() const
           neighbor->build_once};
 }
 
-/* ----------------------------------------------------------------------
-   Fixes that are made for atoms: those that set forces affect only external ones, as forces of
-   stress never leave the lattice, and thermostats treat the motion of points as heat
-------------------------------------------------------------------------- */
-
+/** Fixes that are made for atoms: those that set forces affect only external ones, as forces of
+ *  stress never leave the lattice, and thermostats treat the motion of points as heat. */
 void MPMSetupChecks::fixes()
 {
   static const char *const forces =
@@ -384,11 +368,8 @@ void MPMSetupChecks::fixes()
     }
 }
 
-/* ----------------------------------------------------------------------
-   With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A skin
-   counts as small for grains only if it is a small part of their size
-------------------------------------------------------------------------- */
-
+/** With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A
+ *  skin counts as small for grains only if it is a small part of their size. */
 void MPMSetupChecks::skin()
 {
   constexpr double SMALL = 0.1;    // of the node spacing; half of it is a good choice
@@ -405,13 +386,10 @@ void MPMSetupChecks::skin()
         neighbor->skin, h, 0.5 * h, neighbor->style == Neighbor::MULTI ? "multi" : "bin");
 }
 
-/* ----------------------------------------------------------------------
-   Blocks of nodes and the order of points work with a large skin, but lists and ghosts grow with
-   the cube of skin and cutoff. Measured for two touching blocks, cutoff 0.55 and node spacing 1:
-   with a skin of 0.5 0.7 pairs per atom; with 2, 19 pairs and 2.2 times the time of the run; with
-   4, 180 pairs and 6.8 times
-------------------------------------------------------------------------- */
-
+/** Blocks of nodes and the order of points work with a large skin, but lists and ghosts grow with
+ *  the cube of skin and cutoff. Measured for two touching blocks, cutoff 0.55 and node spacing 1:
+ *  with a skin of 0.5 0.7 pairs per atom; with 2, 19 pairs and 2.2 times the time of the run; with
+ *  4, 180 pairs and 6.8 times. */
 void MPMSetupChecks::lists_of_pairs()
 {
   constexpr double MANY = 10.0, RATIO = 8.0;    // pairs per atom; ratio for twice the cutoff in 3d
@@ -446,12 +424,9 @@ void MPMSetupChecks::lists_of_pairs()
                  neighbor->style == Neighbor::MULTI ? "multi" : "bin");
 }
 
-/* ----------------------------------------------------------------------
-   Pair style granular takes its cutoffs from the radii, but restart files lack the data that it
-   needs for this: with the settings of a file alone, cutoffs are undefined, mostly 0. Then there
-   are no ghosts, and contacts across ranks and periodic faces are missed silently.
-------------------------------------------------------------------------- */
-
+/** Pair style granular takes its cutoffs from the radii, but restart files lack the data that it
+ *  needs for this: with the settings of a file alone, cutoffs are undefined, mostly 0. Then there
+ *  are no ghosts, and contacts across ranks and periodic faces are missed silently. */
 static void check_cutoffs(LAMMPS *lmp)
 {
   const Atom *atom = lmp->atom;
@@ -476,11 +451,8 @@ static void check_cutoffs(LAMMPS *lmp)
     }
 }
 
-/* ----------------------------------------------------------------------
-   Grains see points by their radius. LAMMPS gives no error for a radius of zero, which leaves no
-   force or one between centers, nor for one of 0.5, its default, in other units.
-------------------------------------------------------------------------- */
-
+/** Grains see points by their radius. LAMMPS gives no error for a radius of zero, which leaves no
+ *  force or one between centers, nor for one of 0.5, its default, in other units. */
 void MPMSetupChecks::radii()
 {
   if (!atom->radius_flag) return;

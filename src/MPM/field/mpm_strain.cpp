@@ -28,8 +28,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
-
 void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPointMap::Run &run,
                               int first, int n, const double *L, double dt)
 {
@@ -81,12 +79,9 @@ void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPoin
             first + p, fmt::format("has a deformation gradient of determinant {}", b.J[p]));
 }
 
-/* ----------------------------------------------------------------------
-   points without any stress get the pressure of their equation of state, so that the first step
-   begins with that of a gas; for points that have come to zero stress this changes nothing;
-   points that have failed keep it
-------------------------------------------------------------------------- */
-
+/** Points without any stress get the pressure of their equation of state, so that the first step
+ *  begins with that of a gas; for points that have come to zero stress this changes nothing; points
+ *  that have failed keep it. */
 void LAMMPS_NS::give_initial_stress(MPMField &field, int first)
 {
   Batch &batch = *field.batch;

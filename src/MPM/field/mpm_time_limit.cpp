@@ -36,8 +36,6 @@ using namespace MPM_NS;
 
 static constexpr int CHECK_EVERY = 20;    // steps between checks of the time step
 
-/* ---------------------------------------------------------------------- */
-
 void MPMTimeLimit::setup()
 {
   next_check = update->ntimestep;
@@ -50,8 +48,6 @@ void MPMTimeLimit::setup()
   warn();
   if (field.plan->fields[0] == &field) warn_of_small();
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
 {
@@ -119,8 +115,6 @@ void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
   volume_rate = {most / b.dt, atom->tag[first + fastest]};
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMTimeLimit::check()
 {
   if (!field.options.dt_check || !bound || update->ntimestep < next_check) return;
@@ -149,16 +143,13 @@ void MPMTimeLimit::check()
   }
 }
 
-/* ----------------------------------------------------------------------
-   largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
-   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from
-   velocities that the same stress has just changed (USL without affine matrix) reduces it most.
-   With points of finite size it is proportional to the square root of their half size s in node
-   spacings, as the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s).
-   Domains (CPDI) do not depend on size. Linear functions without any limit have warnings of their
-   own, see mpm_stage_light.cpp and share_of_thin_nodes().
-------------------------------------------------------------------------- */
-
+/** Largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
+ *  bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from
+ *  velocities that the same stress has just changed (USL without affine matrix) reduces it most.
+ *  With points of finite size it is proportional to the square root of their half size s in node
+ *  spacings, as the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s).
+ *  Domains (CPDI) do not depend on size. Linear functions without any limit have warnings of their
+ *  own, see mpm_stage_light.cpp and share_of_thin_nodes(). */
 double MPMTimeLimit::stable_share(double size) const
 {
   const auto &options = field.options;
@@ -187,14 +178,11 @@ double MPMTimeLimit::stable_share(double size) const
   return order == 1 ? 0.6 : (order == 2 ? 0.55 : 0.9);
 }
 
-/* ----------------------------------------------------------------------
-   The total frame has no remedy for light nodes, but its lattice does not change: the largest
-   stable time step in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and the
-   mass m = sum_p m_p N_ip is stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and give
-   1.6 times as much with affine matrices. Bernstein functions of the middle of a cell begin like
-   linear ones.
-------------------------------------------------------------------------- */
-
+/** The total frame has no remedy for light nodes, but its lattice does not change: the largest
+ *  stable time step in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and
+ *  the mass m = sum_p m_p N_ip is stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and
+ *  give 1.6 times as much with affine matrices. Bernstein functions of the middle of a cell begin
+ *  like linear ones. */
 double MPMTimeLimit::share_of_thin_nodes() const
 {
   const auto &options = field.options;
@@ -236,8 +224,6 @@ double MPMTimeLimit::share_of_thin_nodes() const
   return all > 1.0 ? 1.0 / sqrt(all) : 1.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMTimeLimit::warn() const
 {
   tagint tag;
@@ -255,13 +241,10 @@ void MPMTimeLimit::warn() const
         field.frame->is_total() ? ", or an origin for which faces of the body are on nodes" : "");
 }
 
-/* ----------------------------------------------------------------------
-   Warns if nobody has set the time step, and the default of the units is that of atoms: for most
-   bodies so small that nothing moves. If a pair style indicates atoms or grains, it may be right,
-   unless it is tiny. A time step that was set for other reasons than these points (grains, finite
-   elements), or by fix mpm/dt, may have to be small
-------------------------------------------------------------------------- */
-
+/** Warns if nobody has set the time step, and the default of the units is that of atoms: for most
+ *  bodies so small that nothing moves. If a pair style indicates atoms or grains, it may be right,
+ *  unless it is tiny. A time step that was set for other reasons than these points (grains, finite
+ *  elements), or by fix mpm/dt, may have to be small. */
 void MPMTimeLimit::warn_of_small() const
 {
   constexpr double SMALL = 1.0e-2;    // share of the limit below which a time step is small
@@ -290,8 +273,6 @@ void MPMTimeLimit::warn_of_small() const
                    "fix mpm/dt 0.5 would take {:.0f} times fewer steps",
                    dt, limit, 0.5 * limit / dt);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double LAMMPS_NS::elapsed_time(const Update &update)
 {

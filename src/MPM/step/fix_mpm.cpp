@@ -51,10 +51,7 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm H keyword value ...
-------------------------------------------------------------------------- */
-
+/** Fix ID group mpm H keyword value ... */
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   if (!MPMPoints::get(atom))
@@ -98,14 +95,10 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 
 FixMPM::~FixMPM() = default;
 
-/* ---------------------------------------------------------------------- */
-
 int FixMPM::setmask()
 {
   return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | PRE_FORCE;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::init()
 {
@@ -156,8 +149,6 @@ void FixMPM::init()
   atom->sortfreq = 0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPM::check_fields() const
 {
   const auto &mine = field->options;
@@ -177,11 +168,8 @@ void FixMPM::check_fields() const
   check_include();
 }
 
-/* ----------------------------------------------------------------------
-   Points that touch something must be in the neighbor lists; none does where the only others are
-   grains in a fluid
-------------------------------------------------------------------------- */
-
+/** Points that touch something must be in the neighbor lists; none does where the only others are
+ *  grains in a fluid. */
 void FixMPM::check_include() const
 {
   const int listed = neighbor->includegroup;
@@ -193,8 +181,6 @@ void FixMPM::check_include() const
              "mpm/surface with keyword group {}, or the group of a fix mpm/immersed",
              group->names[listed], group->names[listed]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::setup_pre_exchange()
 {
@@ -238,14 +224,10 @@ void FixMPM::setup(int)
   field->time_limit->setup();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPM::initial_integrate(int /*vflag*/)
 {
   if (plan) plan->step();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::pre_exchange()
 {
@@ -254,12 +236,9 @@ void FixMPM::pre_exchange()
   if (plan) field->guard->tell_lost_atoms();
 }
 
-/* ----------------------------------------------------------------------
-   after exchange and borders: restore the order of points when it has decayed.
-   At steps with a restart file the order must not depend on history, so that a run that
-   continues from the file sums in the same order.
-------------------------------------------------------------------------- */
-
+/** After exchange and borders: restore the order of points when it has decayed. At steps with a
+ *  restart file the order must not depend on history, so that a run that continues from the file
+ *  sums in the same order. */
 void FixMPM::pre_neighbor()
 {
   int flag = field->map->wants_sort(), flag_all;
@@ -269,12 +248,9 @@ void FixMPM::pre_neighbor()
   field->map->valid = false;
 }
 
-/* ----------------------------------------------------------------------
-   LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include).
-   Nothing exerts torques on the others, so that these stay zero until atoms change their places in
-   memory
-------------------------------------------------------------------------- */
-
+/** LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify
+ *  include). Nothing exerts torques on the others, so that these stay zero until atoms change their
+ *  places in memory. */
 void FixMPM::pre_force(int)
 {
   if (!plan || !neighbor->includegroup) return;
@@ -284,8 +260,6 @@ void FixMPM::pre_force(int)
   if (atom->torque_flag && !no_torques) memset(&atom->torque[atom->nfirst][0], 0, n);
   no_torques = true;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::post_run()
 {
@@ -299,12 +273,9 @@ void FixMPM::post_run()
     field->plan->report(*field, bytes_per_point(), point_extremes(lmp, *field));
 }
 
-/* ----------------------------------------------------------------------
-   scalar: number of points; vector: blocks with points, active blocks, points per block,
-   updates of the topology and sorts in this run, halo bytes sent per step; points, mass and
-   momentum deleted so far
-------------------------------------------------------------------------- */
-
+/** Scalar: number of points; vector: blocks with points, active blocks, points per block, updates
+ *  of the topology and sorts in this run, halo bytes sent per step; points, mass and momentum
+ *  deleted so far. */
 double FixMPM::compute_scalar()
 {
   double n = 0.0, all;
@@ -348,11 +319,9 @@ double FixMPM::memory_usage()
   return FixMPMState::memory_usage() + field->memory_usage();
 }
 
-/* ----------------------------------------------------------------------
-   totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
-   neighbor lists are made, the options that a run must go on with, the duration of the last step,
-   and what else the run has
-------------------------------------------------------------------------- */
+/** Totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
+ *  neighbor lists are made, the options that a run must go on with, the duration of the last step,
+ *  and what else the run has. */
 
 namespace {
 struct Saved {

@@ -38,10 +38,7 @@ using namespace MPM_NS;
 static constexpr double ROUND_OFF = 1.0e-10;    // of times
 static constexpr double SAME = 1.0e-9;          // of limits of the time step
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/dt FRACTION keyword value ...
-------------------------------------------------------------------------- */
-
+/** Fix ID all mpm/dt FRACTION keyword value ... */
 Options MPMDtOptions::declare()
 {
   using namespace option;
@@ -93,8 +90,6 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 
 FixMPMDt::~FixMPMDt() = default;
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMDt::init()
 {
   const auto limits = find_fixes<MPMStepLimit>(lmp);
@@ -116,12 +111,9 @@ void FixMPMDt::init()
     collisions = std::make_unique<MPMGrains>(lmp, fmt::format("Fix mpm/dt {} grains", id));
 }
 
-/* ----------------------------------------------------------------------
-   the step in which the volume of a point would change by STRAIN, at the largest rate of the steps
-   since the last look. A drop that is alone on the lattice breathes in a few steps: the rate of a
-   single one of them may be that of a turning point
-------------------------------------------------------------------------- */
-
+/** The step in which the volume of a point would change by STRAIN, at the largest rate of the steps
+ *  since the last look. A drop that is alone on the lattice breathes in a few steps: the rate of a
+ *  single one of them may be that of a turning point. */
 FixMPMDt::Limit FixMPMDt::strain_limit_local() const
 {
   Limit mine = carried;
@@ -134,10 +126,7 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
   return mine;
 }
 
-/* ----------------------------------------------------------------------
-   the smallest limit of all points of all fields, known to all ranks
-------------------------------------------------------------------------- */
-
+/** The smallest limit of all points of all fields, known to all ranks. */
 FixMPMDt::Limit FixMPMDt::point_limit() const
 {
   Limit mine = strain_limit_local();
@@ -168,12 +157,9 @@ double FixMPMDt::grain_dt(const Limit &limit) const
   return limit.other == NO_GRAIN ? NO_POINTS.dt : allowed(limit);
 }
 
-/* ----------------------------------------------------------------------
-   Grains that will touch before the next look count, too; longest: bound of the time step until
-   then. At looks it is what points alone would allow, and not the time step of now, which a restart
-   may change
-------------------------------------------------------------------------- */
-
+/** Grains that will touch before the next look count, too; longest: bound of the time step until
+ *  then. At looks it is what points alone would allow, and not the time step of now, which a
+ *  restart may change. */
 FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points) const
 {
   double longest = points.dt < NO_POINTS.dt ? fraction * points.dt : grow * wanted;
@@ -215,14 +201,11 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
   return mine;
 }
 
-/* ----------------------------------------------------------------------
-   start of a run: the time step is set at once, without limit to its growth. When the state is the
-   one that the last run or the restart file left, then the time step is kept, so that a run in two
-   parts takes the same steps as one without a break. The neighbor lists are new ones: pairs of
-   grains that these have, and those at the end of the last run had not, do not make another state
-   of it, but are looked at as whenever lists are new.
-------------------------------------------------------------------------- */
-
+/** Start of a run: the time step is set at once, without limit to its growth. When the state is the
+ *  one that the last run or the restart file left, then the time step is kept, so that a run in two
+ *  parts takes the same steps as one without a break. The neighbor lists are new ones: pairs of
+ *  grains that these have, and those at the end of the last run had not, do not make another state
+ *  of it, but are looked at as whenever lists are new. */
 void FixMPMDt::setup_pre_force(int)
 {
   for (auto *field : MPMField::all(lmp)) field->time_limit->watch_volume = strain > 0.0;
@@ -254,11 +237,8 @@ void FixMPMDt::setup_pre_force(int)
     change_dt(fit_to_end(wanted, 2));    // output of the last one is asked for at the end of a step
 }
 
-/* ----------------------------------------------------------------------
-   A run ends as with fix halt. Its last steps are equal parts of the time that is left, and no
-   longer than wanted; points that take one step in several of the run have moved at its end
-------------------------------------------------------------------------- */
-
+/** A run ends as with fix halt. Its last steps are equal parts of the time that is left, and no
+ *  longer than wanted; points that take one step in several of the run have moved at its end. */
 bool FixMPMDt::at_end() const
 {
   return until > 0.0 && until - elapsed_time(*update) <= ROUND_OFF * until;
@@ -291,12 +271,9 @@ void FixMPMDt::announce_end()
   modify->addstep_compute_all(last);
 }
 
-/* ----------------------------------------------------------------------
-   the limit of strain is kept at once, as in an impact the next look could be too late; that of
-   grains when there are new neighbor lists, as in old ones two that are about to touch may not be a
-   pair
-------------------------------------------------------------------------- */
-
+/** The limit of strain is kept at once, as in an impact the next look could be too late; that of
+ *  grains when there are new neighbor lists, as in old ones two that are about to touch may not be
+ *  a pair. */
 void FixMPMDt::end_of_step()
 {
   if (at_end()) return stop_run();
@@ -323,10 +300,7 @@ void FixMPMDt::look()
   if (limit.dt < NO_POINTS.dt) set_dt(std::min(fraction * limit.dt, grow * wanted));
 }
 
-/* ----------------------------------------------------------------------
-   set the time step, and tell everybody when it changes, as fix dt/reset does
-------------------------------------------------------------------------- */
-
+/** Set the time step, and tell everybody when it changes, as fix dt/reset does. */
 void FixMPMDt::set_dt(double dt)
 {
   if (dt_max > 0.0) dt = std::min(dt, dt_max);
@@ -375,8 +349,6 @@ void FixMPMDt::change_dt(double dt)
   nchanges++;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMDt::note_limits()
 {
   const Limit points = point_limit();
@@ -401,8 +373,6 @@ void FixMPMDt::post_run()
   warned_of_rest = warned_of_rest || update->nsteps > 0;    // once: runs can have many parts
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixMPMDt::compute_scalar()
 {
   return update->dt;
@@ -418,10 +388,9 @@ double FixMPMDt::compute_vector(int i)
   return passed > 0.0 ? (left / passed - 1.0) * (platform::walltime() - wall_at_start) : 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   between runs: what the last one has left, as the next run compares with that; the fixes may not
-   be those of the last run. Files of older versions begin with the time step and have no options
-------------------------------------------------------------------------- */
+/** Between runs: what the last one has left, as the next run compares with that; the fixes may not
+ *  be those of the last run. Files of older versions begin with the time step and have no
+ *  options. */
 
 static constexpr double WITH_OPTIONS = -1.0;
 

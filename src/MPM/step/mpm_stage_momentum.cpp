@@ -20,11 +20,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   Where the frame has forces of its own (Piola-Kirchhoff stress, hoop stress), it makes them a
-   batch at a time, and so are those of other physics
-------------------------------------------------------------------------- */
-
+/** Where the frame has forces of its own (Piola-Kirchhoff stress, hoop stress), it makes them a
+ *  batch at a time, and so are those of other physics. */
 void LAMMPS_NS::run_to_tile(MPMField &field, P2G p2g, const PointRows &rows,
                             const TransferStep &step, const MPMPointMap::Run &run,
                             const int base[3], int box[6])
@@ -76,8 +73,6 @@ PointRows LAMMPS_NS::rows_from(const MPMField &field, const PointRows &rows, int
   return b;
 }
 
-/* ---------------------------------------------------------------------- */
-
 static void to_nodes(MPMField &field, P2G p2g)
 {
   MPMPointMap &map = *field.map;
@@ -119,8 +114,6 @@ void MPMStages::sum_nodes(MPMField &field, Content content)
   const int nreal = field.kernel.nreal;
   field.nodes.sum(field.grid.nodes(), nreal, content == FORCE ? 4 : 0, content == ALL ? nreal : 4);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMStages::momentum_equation(MPMField &field)
 {

@@ -33,11 +33,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   With scheme usl and without light nodes the motion of this step is that of the material: stress
-   is made at once, while points are in the cache
-------------------------------------------------------------------------- */
-
+/** With scheme usl and without light nodes the motion of this step is that of the material: stress
+ *  is made at once, while points are in the cache. */
 void MPMStages::nodes_to_points(MPMField &field, Strain strain, const UseGradients &use)
 {
   if (field.has_moved()) {
@@ -100,8 +97,6 @@ bool MPMStages::can_move_first(const MPMField &field)
       }) == 1;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMStages::move_points(MPMField &field)
 {
   for (const auto &run : field.map->runs) {
@@ -111,13 +106,10 @@ void MPMStages::move_points(MPMField &field)
   }
 }
 
-/* ----------------------------------------------------------------------
-   With MUSL and USAVG, points and the corners of domains move with the velocities that were mapped
-   back, which strain takes, too. What moves apart from strain is not held by stress, and under
-   tension goes away from where it belongs. In the total frame forces do not depend on where points
-   are
-------------------------------------------------------------------------- */
-
+/** With MUSL and USAVG, points and the corners of domains move with the velocities that were mapped
+ *  back, which strain takes, too. What moves apart from strain is not held by stress, and under
+ *  tension goes away from where it belongs. In the total frame forces do not depend on where points
+ *  are. */
 void MPMStages::strain_from_nodes(MPMField &field, double motion_dt, double share,
                                   double shift_share, bool moves)
 {
@@ -153,8 +145,6 @@ void MPMStages::strain_from_nodes(MPMField &field, double motion_dt, double shar
   });
   if (fbar) field.locking->strain(kept, dt);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMStages::checks(MPMField &field)
 {

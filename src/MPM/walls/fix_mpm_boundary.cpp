@@ -103,8 +103,6 @@ int FixMPMBoundary::read_place(int narg, char **arg)
   return iarg;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMBoundary::init()
 {
   // fields, in the order of their definition
@@ -215,8 +213,6 @@ void FixMPMBoundary::init_action()
   reaction.begin_run(*this);
 }
 
-/* ---------------------------------------------------------------------- */
-
 const MPMWallNodes *FixMPMBoundary::nodes_of(const MPMField &field) const
 {
   for (const auto &list : nodes)
@@ -284,8 +280,6 @@ void FixMPMBoundary::predict(MPMField &field, const std::vector<char> &near,
   if (const auto *list = nodes_of(field)) list->predict(near, to);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMBoundary::act(double dt, Stage stage)
 {
   const bool count = stage == STEP;
@@ -312,8 +306,6 @@ void FixMPMBoundary::act(double dt, Stage stage)
   if (count) wall.state.acted = 1;
   if (count && thin_regions.is_due()) thin_regions.report();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::write_restart(FILE *fp)
 {

@@ -107,12 +107,9 @@ MPMContactSearch::Lines MPMContactSearch::lines_in_front(const MPMWallNodes &lis
   return lines;
 }
 
-/* ----------------------------------------------------------------------
-   Where the material has left the outer node of a line through the wall, that line cannot act. A
-   line through the material a little further in can, and explicit steps come back to the wall
-   within a few steps
-------------------------------------------------------------------------- */
-
+/** Where the material has left the outer node of a line through the wall, that line cannot act. A
+ *  line through the material a little further in can, and explicit steps come back to the wall
+ *  within a few steps. */
 void MPMContactSearch::leave_out_acting(MPMWallNodes &list, MPMBoxFace *face, Lines &lines) const
 {
   MPMField &field = list.field;
@@ -223,8 +220,6 @@ bool MPMContactSearch::find_surface(MPMWallNodes &list, const Key &key, const Ne
   }
   return acting.n > 0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMContactSearch::find_approaches(MPMWallNodes &list, double dt)
 {

@@ -15,10 +15,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values
-------------------------------------------------------------------------- */
-
+/** Fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values */
 Options MPMBoundaryOptions::declare(int dim)
 {
   using namespace option;

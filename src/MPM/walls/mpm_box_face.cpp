@@ -38,8 +38,6 @@ double MPMBoxFace::position(const Domain &box) const
 
 static constexpr double FILLED = 0.4;    // share of the volume in reach of the node in front
 
-/* ---------------------------------------------------------------------- */
-
 MPMContactDistance MPMBoxFace::contact_of(const MPMField &field, double x) const
 {
   if (!cut) {

@@ -47,8 +47,6 @@ MPMWallGap::Sums MPMContactSearch::sums(const NodeLine &line) const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMContactSearch::find_contacts(MPMWallNodes &list, double dt, double tolerance)
 {
   if (wall.region) return find_region_contacts(list, dt, tolerance);
@@ -87,12 +85,9 @@ void MPMContactSearch::map_region(MPMWallNodes &list, double dt)
           wall.distance_from_region(field, dt));
 }
 
-/* ----------------------------------------------------------------------
-   Lines of a region that moves and holds act as soon as nodes on both sides of the surface see
-   material, which can be half a node spacing in front. Notes the first such place for a warning.
-   Collective
-------------------------------------------------------------------------- */
-
+/** Lines of a region that moves and holds act as soon as nodes on both sides of the surface see
+ *  material, which can be half a node spacing in front. Notes the first such place for a warning.
+ *  Collective. */
 void MPMContactSearch::check_gaps(MPMWallNodes &list, double dt)
 {
   if (first_gap.is_reported()) return;
@@ -126,8 +121,6 @@ void MPMContactSearch::check_gaps(MPMWallNodes &list, double dt)
       wall.id, wall.region_id, first[2], first[3], first[4], first[0],
       wall.kind == MPMWall::STICK ? "stick" : "slip");
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMContactSearch::find_region_contacts(MPMWallNodes &list, double dt, double tolerance)
 {

@@ -93,8 +93,6 @@ std::vector<MPMCoupledLines> MPMCoupledLines::find(std::vector<MPMCrossing> &lin
   return found;
 }
 
-/* ---------------------------------------------------------------------- */
-
 /** Start of an act: the masses of nodes. Returns false if there is none. */
 bool MPMCoupledLines::begin(MPMField &field)
 {

@@ -26,16 +26,13 @@ static double mass(Grid &grid, int64_t node)
   return node < 0 ? 0.0 : grid.record(node)[3];
 }
 
-/* ----------------------------------------------------------------------
-   In front of a plane, a node at the distance x from the surface has the mass that its function has
-   over x' > -x. If it has more mass than with a surface that is INTO deeper in the wall, then there
-   is material at another face.
-
-   The functions are quadratic ones for all shapes. With linear and cubic ones, too, this holds for
-   all material in front of a plane, wherever it is between nodes, and for none behind a plate of .3
-   to 3 spacings: the shift by INTO is enough for their differences.
-------------------------------------------------------------------------- */
-
+/** In front of a plane, a node at the distance x from the surface has the mass that its function
+ *  has over x' > -x. If it has more mass than with a surface that is INTO deeper in the wall, then
+ *  there is material at another face.
+ *
+ *  The functions are quadratic ones for all shapes. With linear and cubic ones, too, this holds for
+ *  all material in front of a plane, wherever it is between nodes, and for none behind a plate of
+ *  .3 to 3 spacings: the shift by INTO is enough for their differences. */
 bool MPMCrossing::is_in_front(Grid &grid) const
 {
   constexpr double INTO = 0.3, LITTLE = 1.0e-3;    // in node spacings; share of the mass

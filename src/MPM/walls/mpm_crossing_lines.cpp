@@ -40,15 +40,12 @@ void MPMCrossingLines::clear()
   crossed_known.clear();
 }
 
-/* ----------------------------------------------------------------------
-   Lines of nodes through the surface of a region that separates, along the axis that is nearest to
-   the normal. Nodes inside that are on such a line do not act on their own.
-
-   Next to edges, and where the region is thin, nodes of a line may be nearer to another face, or
-   beyond it. There, whether a line acts depends on where the material is, see is_in_front(). Such
-   lines are found from the nodes outside, which are nearest to the face that they look at.
-------------------------------------------------------------------------- */
-
+/** Lines of nodes through the surface of a region that separates, along the axis that is nearest to
+ *  the normal. Nodes inside that are on such a line do not act on their own.
+ *
+ *  Next to edges, and where the region is thin, nodes of a line may be nearer to another face, or
+ *  beyond it. There, whether a line acts depends on where the material is, see is_in_front(). Such
+ *  lines are found from the nodes outside, which are nearest to the face that they look at. */
 void MPMCrossingLines::list(const std::vector<MPMWallNode> &nodes,
                             const std::vector<MPMWallNode> &outside)
 {
@@ -89,12 +86,9 @@ void MPMCrossingLines::list(const std::vector<MPMWallNode> &nodes,
   if (wall.holds_surface()) coupled = MPMCoupledLines::find(lines, wall.kind == MPMWall::STICK);
 }
 
-/* ----------------------------------------------------------------------
-   Nodes that are on lines do not act on their own. With slip and friction, a surface that moves
-   across the lattice hands nodes over, see MPMWallNodes. Lines cannot do this, and there are
-   none in that case
-------------------------------------------------------------------------- */
-
+/** Nodes that are on lines do not act on their own. With slip and friction, a surface that moves
+ *  across the lattice hands nodes over, see MPMWallNodes. Lines cannot do this, and there are none
+ *  in that case. */
 void MPMCrossingLines::take_nodes(std::vector<MPMWallNode> &nodes)
 {
   const bool hands_over =
@@ -123,11 +117,9 @@ void MPMCrossingLines::take_nodes(std::vector<MPMWallNode> &nodes)
               nodes.end());
 }
 
-/* ----------------------------------------------------------------------
-   Where does the line along an axis through this node cross the surface? x: position of the node;
-   way: from there to the surface. False if the normal is not known, or the surface is not smooth
-------------------------------------------------------------------------- */
-
+/** Where does the line along an axis through this node cross the surface? x: position of the node;
+ *  way: from there to the surface. False if the normal is not known, or the surface is not
+ *  smooth. */
 bool MPMCrossingLines::find_surface(const MPMWallNode &node, MPMCrossing &c, double *x,
                                     double &way) const
 {
@@ -175,11 +167,8 @@ bool MPMCrossingLines::find_surface(const MPMWallNode &node, MPMCrossing &c, dou
   return MathExtra::dot3(n, c.normal) > SMOOTH;
 }
 
-/* ----------------------------------------------------------------------
-   The line with this node as the last one inside or, if the node is outside, as the first one
-   outside. False if there is none, or if it has nodes where the surface is not smooth
-------------------------------------------------------------------------- */
-
+/** The line with this node as the last one inside or, if the node is outside, as the first one
+ *  outside. False if there is none, or if it has nodes where the surface is not smooth. */
 bool MPMCrossingLines::find(const MPMWallNode &from_node, MPMCrossing &c)
 {
   double x[3], way;
@@ -287,11 +276,8 @@ bool MPMCrossingLines::is_narrow(const MPMWallNode &node, const double *x) const
   return narrow;
 }
 
-/* ----------------------------------------------------------------------
-   Is this node outside, in front of the edge of a blade or of a wire? Then c is the line of nodes
-   from it into the region
-------------------------------------------------------------------------- */
-
+/** Is this node outside, in front of the edge of a blade or of a wire? Then c is the line of nodes
+ *  from it into the region. */
 bool MPMCrossingLines::find_blade(const MPMWallNode &node, MPMCrossing &c) const
 {
   const double h = field.lattice.h, *const n = node.normal;
@@ -372,8 +358,6 @@ bool MPMCrossingLines::holds(const MPMCrossing &c) const
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMCrossingLines::act(MPMWallContact &contact, std::size_t first)
 {
   held_nodes.clear();
@@ -388,11 +372,8 @@ void MPMCrossingLines::act(MPMWallContact &contact, std::size_t first)
     });
 }
 
-/* ----------------------------------------------------------------------
-   Normal and tangential part of the impulse at the surface of a region, whose normal may be
-   inclined to the line
-------------------------------------------------------------------------- */
-
+/** Normal and tangential part of the impulse at the surface of a region, whose normal may be
+ *  inclined to the line. */
 void MPMCrossingLines::act_on_line(MPMWallContact &contact, MPMCrossing &line)
 {
   MPMWallReaction &reaction = contact.reaction;
@@ -471,8 +452,6 @@ void MPMCrossingLines::change_old(const MPMLineConstraint &constraint, const dou
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 int MPMCrossingLines::contact_index(double slope, double place)
 {
   constexpr int PLACES = 32, SLOPES = 32;
@@ -506,8 +485,6 @@ const MPMContactDistance &MPMCrossingLines::contact_at_depth(double depth)
   }
   return by_depth[k];
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMCrossingLines::mark_blocks(std::vector<char> &blocks) const
 {

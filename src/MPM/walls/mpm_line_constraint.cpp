@@ -55,8 +55,6 @@ int MPMLineConstraint::weights_at(const MPMField &field, int axis, int inward, d
   return 3;
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLine &line, int inward,
                              double least)
 {
@@ -114,21 +112,18 @@ bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLin
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   The change of least kinetic energy that removes velocities r relative to the wall, and the
-   impulse lambda that belongs to A. With inverse masses w, and AB = sum_k w_k A_k B_k,
-
-     lambda = -(BB sum_j A_j r_j - AB sum_j B_j r_j)/det,  det = AA BB - AB^2
-
-   A node at the very end of the functions of points has 1e-30 of the mass of its neighbors. Its
-   terms would drown those of the neighbors in AA, AB, and BB: det would be noise, or zero, and with
-   it the velocities of all nodes. With D_jk = A_j B_k - A_k B_j (Lagrange's identity) only terms of
-   pairs of nodes remain:
-
-     det = sum_{j<k} w_j w_k D_jk^2,  lambda = -sum_i w_i B_i sum_j D_ji r_j/det,
-     change of v_k: w_k sum_i w_i D_ik sum_j D_ji r_j/det
-------------------------------------------------------------------------- */
-
+/** The change of least kinetic energy that removes velocities r relative to the wall, and the
+ *  impulse lambda that belongs to A. With inverse masses w, and AB = sum_k w_k A_k B_k,
+ *
+ *    lambda = -(BB sum_j A_j r_j - AB sum_j B_j r_j)/det,  det = AA BB - AB^2
+ *
+ *  A node at the very end of the functions of points has 1e-30 of the mass of its neighbors. Its
+ *  terms would drown those of the neighbors in AA, AB, and BB: det would be noise, or zero, and
+ *  with it the velocities of all nodes. With D_jk = A_j B_k - A_k B_j (Lagrange's identity) only
+ *  terms of pairs of nodes remain:
+ *
+ *    det = sum_{j<k} w_j w_k D_jk^2,  lambda = -sum_i w_i B_i sum_j D_ji r_j/det,
+ *    change of v_k: w_k sum_i w_i D_ik sum_j D_ji r_j/det */
 void MPMLineConstraint::prepare(bool all)
 {
   straight = all;

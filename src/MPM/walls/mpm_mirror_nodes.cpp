@@ -6,32 +6,31 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   The projection of mirror planes is derived in the README of this room. Its impulse on the body is
-     -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
-   with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes
-   k0 + j and to their images k0 - j, which for an unconstrained component is minus the mean velocity
-   at the wall times a mass. Stick prescribes all components, slip the normal one. At edges, a node
-   and its images in all faces of the fix that prescribe a component form a group with signs.
-
-   Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
-   times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
-   back for the gradient follows the decision of the column.
-
-   FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
-   normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
-   momentum and force of the nodes (Sulsky, Chen, Schreyer 1994), so that the increment at a wall at
-   rest is zero, as it is when the body is continued by its mirror image. With an unchanged v_old,
-   the prescribed component would be updated as in PIC. But a point that arrives at the wall must
-   lose its velocity. Hence v_old relative to the wall, whose velocity is that in the last step,
-   counts as consistent with the wall, in each component, only up to the value at the first node
-   inside (a field that rises from the wall has less at the wall than there); any excess remains in
-   v_old, and the points lose it. Separating walls, walls that turn, and friction leave v_old alone.
-   So do regions, except those that stick or slip at their surface (MPMCrossingLines).
-
-   AFLIP leaves v_old alone, too: with affine matrices, a vibration loses nothing, and a constraint
-   on v_old would create energy, see DECISIONS.md. PIC and APIC have no use for v_old.
-------------------------------------------------------------------------- */
+/* The projection of mirror planes is derived in the README of this room. Its impulse on the body
+ *  is
+ *    -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
+ *  with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes k0
+ *  + j and to their images k0 - j, which for an unconstrained component is minus the mean velocity
+ *  at the wall times a mass. Stick prescribes all components, slip the normal one. At edges, a node
+ *  and its images in all faces of the fix that prescribe a component form a group with signs.
+ *
+ *  Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
+ *  times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
+ *  back for the gradient follows the decision of the column.
+ *
+ *  FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
+ *  normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
+ *  momentum and force of the nodes (Sulsky, Chen, Schreyer 1994), so that the increment at a wall
+ *  at rest is zero, as it is when the body is continued by its mirror image. With an unchanged
+ *  v_old, the prescribed component would be updated as in PIC. But a point that arrives at the wall
+ *  must lose its velocity. Hence v_old relative to the wall, whose velocity is that in the last
+ *  step, counts as consistent with the wall, in each component, only up to the value at the first
+ *  node inside (a field that rises from the wall has less at the wall than there); any excess
+ *  remains in v_old, and the points lose it. Separating walls, walls that turn, and friction leave
+ *  v_old alone. So do regions, except those that stick or slip at their surface (MPMCrossingLines).
+ *
+ *  AFLIP leaves v_old alone, too: with affine matrices, a vibration loses nothing, and a constraint
+ *  on v_old would create energy, see DECISIONS.md. PIC and APIC have no use for v_old. */
 
 #include "walls/mpm_mirror_nodes.h"
 
@@ -70,8 +69,6 @@ bool MPMMirrorNodes::are_near(const std::vector<MPMBoxFace> &faces, int axis)
   if (!lo || !hi) return false;
   return hi->plane - lo->plane < (lo->cut || hi->cut ? 5 : 3);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMMirrorNodes::extend_topology() const
 {
@@ -152,11 +149,8 @@ void MPMMirrorNodes::list(std::vector<MPMWallNode> &deep)
   }
 }
 
-/* ----------------------------------------------------------------------
-   nodes between the mirrors of this axis, or of all axes (-1), each with all its images in these
-   mirrors
-------------------------------------------------------------------------- */
-
+/** Nodes between the mirrors of this axis, or of all axes (-1), each with all its images in these
+ *  mirrors. */
 void MPMMirrorNodes::list_groups(const bool *prescribed, int axis)
 {
   const Grid &grid = field.grid;
@@ -237,8 +231,6 @@ void MPMMirrorNodes::add_group(const Mirrors &mirror, const int *index, const bo
     images.pop_back();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMMirrorNodes::mark_blocks(std::vector<char> &blocks) const
 {
   for (const auto &face : faces) {
@@ -249,11 +241,8 @@ void MPMMirrorNodes::mark_blocks(std::vector<char> &blocks) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   Lines through faces that cut cells act twice. At edges, tangential components of one face are
-   normal ones of another: these come last, so that no material gets out
-------------------------------------------------------------------------- */
-
+/** Lines through faces that cut cells act twice. At edges, tangential components of one face are
+ *  normal ones of another: these come last, so that no material gets out. */
 void MPMMirrorNodes::act(MPMWallContact &contact)
 {
   for (const bool last : {false, true}) {
@@ -279,11 +268,8 @@ void MPMMirrorNodes::act(MPMWallContact &contact)
   for (const auto &group : groups) act_on_group(contact.reaction, group);
 }
 
-/* ----------------------------------------------------------------------
-   Do the node and its images have mass, and more than one of them? A single one is free unless it
-   is in the plane of the wall. For most nodes near walls this is false
-------------------------------------------------------------------------- */
-
+/** Do the node and its images have mass, and more than one of them? A single one is free unless it
+ *  is in the plane of the wall. For most nodes near walls this is false. */
 bool MPMMirrorNodes::is_constrained(const Image *image, int n, bool fixed) const
 {
   int massive = 0;
@@ -291,11 +277,8 @@ bool MPMMirrorNodes::is_constrained(const Image *image, int n, bool fixed) const
   return massive > (fixed ? 0 : 1);
 }
 
-/* ----------------------------------------------------------------------
-   sets the prescribed velocities of a node and its images: odd about the wall, and equal to the
-   wall in its plane (fixed)
-------------------------------------------------------------------------- */
-
+/** Sets the prescribed velocities of a node and its images: odd about the wall, and equal to the
+ *  wall in its plane (fixed). */
 void MPMMirrorNodes::project(MPMWallReaction &reaction, const Image *image, int n, bool fixed,
                              const Prescribed &p)
 {
@@ -339,8 +322,6 @@ static void limit_of_old(const double *record, const double *wall, int dim, doub
 {
   for (int d = 0; d < dim; d++) limit[d] = record[3] > 0.0 ? fabs(record[4 + d] - wall[d]) : 0.0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &face,
                                    MPMMirrorColumn &column)
@@ -414,8 +395,6 @@ void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &fa
   reaction.end_sliding();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMMirrorNodes::act_on_group(MPMWallReaction &reaction, const Group &group)
 {
   Grid &grid = field.grid;
@@ -434,8 +413,6 @@ void MPMMirrorNodes::act_on_group(MPMWallReaction &reaction, const Group &group)
   }
   project(reaction, first, n, group.fixed, prescribed);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face, MPMFaceLine &line,
                                  bool last)
@@ -507,10 +484,7 @@ void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face
   reaction.end_sliding();
 }
 
-/* ----------------------------------------------------------------------
-   Images with a heavy node go to others, as most of the mass is in that node
-------------------------------------------------------------------------- */
-
+/** Images with a heavy node go to others, as most of the mass is in that node. */
 void MPMMirrorNodes::list_ties(std::vector<int64_t> &ties, std::vector<int64_t> &others) const
 {
   for (const auto &face : faces) {

@@ -27,10 +27,7 @@ using namespace MPM_NS;
 
 static constexpr double ROUNDING = 1.0e-9;    // of the volume of a cell
 
-/* ----------------------------------------------------------------------
-   Neighbors of a cell, those across a face first, then across an edge, then a corner
-------------------------------------------------------------------------- */
-
+/** Neighbors of a cell, those across a face first, then across an edge, then a corner. */
 static std::vector<std::array<int, 3>> directions(int dim)
 {
   std::vector<std::array<int, 3>> list;
@@ -64,8 +61,6 @@ MPMRegionCut::MPMRegionCut(LAMMPS *lmp, Region *region, const double *origin, co
 }
 
 MPMRegionCut::~MPMRegionCut() = default;
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMRegionCut::match(const double *x) const
 {
@@ -154,8 +149,6 @@ MPMRegionCut::Part MPMRegionCut::try_places(const bigint *s) const
   for (int d = 0; d < 3; d++) part.x[d] = n && d < dim ? sum[d] / n : 0.0;
   return part;
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Can what is in the cell be light? A center inside is as good as a large part, and costs less to
  *  find out. */

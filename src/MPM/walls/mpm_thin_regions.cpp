@@ -27,10 +27,7 @@ bool MPMThinRegions::is_due() const
   return wall.steps % LOOK_EVERY == 1;
 }
 
-/* ----------------------------------------------------------------------
-   Each rank notes the first such place, in a step with several the first one in space
-------------------------------------------------------------------------- */
-
+/** Each rank notes the first such place, in a step with several the first one in space. */
 void MPMThinRegions::check(const MPMWallNodes &list, int index)
 {
   constexpr double BOTH =

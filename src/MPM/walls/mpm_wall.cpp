@@ -55,11 +55,8 @@ void MPMWall::init_region()
                region_id);
 }
 
-/* ----------------------------------------------------------------------
-   A run may start between two steps of the cycle (keyword every of fix mpm); then the state of a
-   region is that at the last step of the cycle
-------------------------------------------------------------------------- */
-
+/** A run may start between two steps of the cycle (keyword every of fix mpm); then the state of a
+ *  region is that at the last step of the cycle. */
 void MPMWall::setup()
 {
   if (!region_moves()) return;
@@ -71,8 +68,6 @@ void MPMWall::setup()
     for (int k = 0; k < 4; k++) state.region[k] = *MPMRegionMotion::of(region)[k];
   placed = true;
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMWall::acts_on(const MPMField &field) const
 {
@@ -89,13 +84,10 @@ bool MPMWall::region_moves() const
   return region && region->dynamic_check();
 }
 
-/* ----------------------------------------------------------------------
-   Nodes inside hold only the points of a body in front of the surface that they reach. The body
-   would creep into the wall, and stresses next to it would be wrong by an amount that depends on
-   where the surface is in a cell. Lines hold the surface. Nodes hold material inside a region, as
-   in a grip, which has no surface there: see MPMCrossingLines.
-------------------------------------------------------------------------- */
-
+/** Nodes inside hold only the points of a body in front of the surface that they reach. The body
+ *  would creep into the wall, and stresses next to it would be wrong by an amount that depends on
+ *  where the surface is in a cell. Lines hold the surface. Nodes hold material inside a region, as
+ *  in a grip, which has no surface there: see MPMCrossingLines. */
 bool MPMWall::acts_across() const
 {
   if (region->varshape) return false;
@@ -126,8 +118,6 @@ bool MPMWall::holds_axis(const MPMField &field) const
   return acts_on(field) && std::count(face_list.begin(), face_list.end(), 0) && !decides() &&
       !rotating() && velocity[0].given && velocity[0].variable.empty() && velocity[0].value == 0.0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMWall::begin_motion()
 {
@@ -171,12 +161,9 @@ void MPMWall::find_motion(double dt)
   (!motion.uniform && !total ? motion.at_end_of_step(dt) : motion).end(state);
 }
 
-/* ----------------------------------------------------------------------
-   A region acts on nodes that are inside at the start of a step: one that crosses more than a
-   cell in a step can pass through a body without touching it. Not all regions give their
-   extent, so this checks displacements alone, not rotations.
-------------------------------------------------------------------------- */
-
+/** A region acts on nodes that are inside at the start of a step: one that crosses more than a cell
+ *  in a step can pass through a body without touching it. Not all regions give their extent, so
+ *  this checks displacements alone, not rotations. */
 void MPMWall::check_speed(double dt)
 {
   const double along[3] = {motion.shift[0], motion.shift[1],
@@ -199,8 +186,6 @@ void MPMWall::check_speed(double dt)
                      id, way / h, field->id(), update->ntimestep);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMWall::restore_region()
 {

@@ -6,12 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Blocks of nodes next to those that points reach. Lines of nodes through the surface of a region
-   can have nodes that only points of another rank reach. A moving region needs different blocks all
-   the time: they are made around its place at that time, a bit wider, and made anew when it has
-   moved by that margin.
-------------------------------------------------------------------------- */
+/* Blocks of nodes next to those that points reach. Lines of nodes through the surface of a region
+ *  can have nodes that only points of another rank reach. A moving region needs different blocks
+ *  all the time: they are made around its place at that time, a bit wider, and made anew when it
+ *  has moved by that margin. */
 
 #include "walls/mpm_wall_nodes.h"
 
@@ -43,17 +41,12 @@ bool MPMWallNodes::needs(const Grid::Block &block) const
   return wall.region || mirrors.needs(block, wall.looks_ahead ? SOUGHT : 0);
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool MPMCrossingLines::needs_topology() const
 {
   return !blocks_known || !(wall.way_since(blocks_at) <= WIDER * field.lattice.h);
 }
 
-/* ----------------------------------------------------------------------
-   Lines along several axes share nodes, so blocks all around are needed
-------------------------------------------------------------------------- */
-
+/** Lines along several axes share nodes, so blocks all around are needed. */
 void MPMCrossingLines::extend_topology()
 {
   if (!wall.acts_across()) return;
@@ -91,11 +84,8 @@ void MPMCrossingLines::extend_topology()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Ranks that have a node of a line need all nodes between it and the wall, and the next ones behind
-   it
-------------------------------------------------------------------------- */
-
+/** Ranks that have a node of a line need all nodes between it and the wall, and the next ones
+ *  behind it. */
 void MPMWallNodes::extend_to_approaches()
 {
   Region *const region = wall.region;

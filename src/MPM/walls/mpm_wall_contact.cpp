@@ -6,11 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Water in pores presses on walls, too, and bears a part of the impulse of the wall. Only the rest
-   acts between grains and wall: friction is proportional to it, and where it would be negative,
-   grains leave a separating wall, pushed by the water. Water does not pull at a separating wall.
-------------------------------------------------------------------------- */
+/* Water in pores presses on walls, too, and bears a part of the impulse of the wall. Only the rest
+ *  acts between grains and wall: friction is proportional to it, and where it would be negative,
+ *  grains leave a separating wall, pushed by the water. Water does not pull at a separating
+ *  wall. */
 
 #include "walls/mpm_wall_contact.h"
 
@@ -52,8 +51,6 @@ double MPMWallContact::tangential_share(MPMContactState &state, double normal, d
   return state == MPMContactState::STUCK ? 1.0 : 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallContact::find_water(MPMField &field, const std::vector<char> &near, double dt)
 {
   water.clear();
@@ -70,10 +67,7 @@ double MPMWallContact::water_on(const int64_t *node, int n, const double *normal
   return sum;
 }
 
-/* ----------------------------------------------------------------------
-   the water does work on the body that it lifts, as does a wall that moves with it
-------------------------------------------------------------------------- */
-
+/** The water does work on the body that it lifts, as does a wall that moves with it. */
 void MPMWallContact::push_by_water(MPMField &field, const int64_t *nodes, int n,
                                    const double *normal)
 {

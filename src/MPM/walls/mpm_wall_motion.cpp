@@ -6,14 +6,12 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
-   tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
-   every point outward by a factor sqrt(1 + (omega dt)^2) per step, and the chord puts it back on
-   its circle exactly, since splines reproduce linear fields. USF asks for velocities first, to find
-   how the material has moved to its present position: then the chord is that of the step that has
-   ended, (I - R^-1)(x - o)/dt, whose matrix is minus the transpose of the other one.
-------------------------------------------------------------------------- */
+/* Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
+ *  tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
+ *  every point outward by a factor sqrt(1 + (omega dt)^2) per step, and the chord puts it back on
+ *  its circle exactly, since splines reproduce linear fields. USF asks for velocities first, to
+ *  find how the material has moved to its present position: then the chord is that of the step that
+ *  has ended, (I - R^-1)(x - o)/dt, whose matrix is minus the transpose of the other one. */
 
 #include "walls/mpm_wall_motion.h"
 
@@ -34,10 +32,7 @@ void MPMWallMotion::begin(const MPMWallState &state)
   MathExtra::copy3(state.origin, origin_before);
 }
 
-/* ----------------------------------------------------------------------
-   gradient = (R - I)/dt for a rotation about a unit axis through o
-------------------------------------------------------------------------- */
-
+/** Gradient = (R - I)/dt for a rotation about a unit axis through o. */
 void MPMWallMotion::rotate(double angle, const double *u, const double *o, double dt)
 {
   uniform = false;
@@ -50,10 +45,8 @@ void MPMWallMotion::rotate(double angle, const double *u, const double *o, doubl
       gradient[i][j] = s * K[i][j] + c * (u[i] * u[j] - (i == j ? 1.0 : 0.0));
 }
 
-/* ----------------------------------------------------------------------
-   nodes have moved from X to x = X + T X + m, so s + G (x - o) becomes s + G (m - o) + (G + G T) X
-------------------------------------------------------------------------- */
-
+/** Nodes have moved from X to x = X + T X + m, so s + G (x - o) becomes s + G (m - o) + (G + G T)
+ *  X. */
 void MPMWallMotion::refer_to_start(MPMWallState &state, double dt)
 {
   std::copy_n(state.turned[0], 9, turned[0]);
@@ -75,11 +68,8 @@ void MPMWallMotion::refer_to_start(MPMWallState &state, double dt)
   }
 }
 
-/* ----------------------------------------------------------------------
-   velocity during the step of the material that is at x at its end. It came from y,
-   x = y + dt (s + G (y - o)): with R = 1 + dt G, s + G R^T (x - o - dt s), G R^T = -G^T.
-------------------------------------------------------------------------- */
-
+/** Velocity during the step of the material that is at x at its end. It came from y, x = y + dt (s
+ *  + G (y - o)): with R = 1 + dt G, s + G R^T (x - o - dt s), G R^T = -G^T. */
 MPMWallMotion MPMWallMotion::at_end_of_step(double dt) const
 {
   MPMWallMotion end = *this;
@@ -97,8 +87,6 @@ void MPMWallMotion::end(MPMWallState &state) const
   MathExtra::copy3(origin, state.origin);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallMotion::velocity(const double *x, double *v) const
 {
   MathExtra::copy3(shift, v);
@@ -114,14 +102,11 @@ void MPMWallMotion::velocity(const Grid &grid, int64_t node, double *v) const
   velocity(x, v);
 }
 
-/* ----------------------------------------------------------------------
-   half of the change of the velocity of the wall, at the node, since the last step. An impulse R dt
-   of the wall takes its node from the velocity u to v, with which points then go from x to x'. It
-   adds R dt (u + v)/2 to the kinetic and stored energy, up to terms that the next step cancels, as
-   the forces at x do work on half of the way to x and half of the way to x'. R dt v would differ
-   from it by R (v - u) dt/2 in each step, which adds up where a mass is shaken.
-------------------------------------------------------------------------- */
-
+/** Half of the change of the velocity of the wall, at the node, since the last step. An impulse R
+ *  dt of the wall takes its node from the velocity u to v, with which points then go from x to x'.
+ *  It adds R dt (u + v)/2 to the kinetic and stored energy, up to terms that the next step cancels,
+ *  as the forces at x do work on half of the way to x and half of the way to x'. R dt v would
+ *  differ from it by R (v - u) dt/2 in each step, which adds up where a mass is shaken. */
 void MPMWallMotion::half_change(const Grid &grid, int64_t node, double *v) const
 {
   double x[3];
@@ -134,11 +119,8 @@ void MPMWallMotion::half_change(const Grid &grid, int64_t node, double *v) const
           (gradient[i][j] * (x[j] - origin[j]) - gradient_before[i][j] * (x[j] - origin_before[j]));
 }
 
-/* ----------------------------------------------------------------------
-   the part of old velocities relative to the wall that counts as consistent with it, see
-   mpm_mirror_nodes.cpp
-------------------------------------------------------------------------- */
-
+/** The part of old velocities relative to the wall that counts as consistent with it, see
+ *  mpm_mirror_nodes.cpp. */
 double MPMWallMotion::old_relative(const double *record, int d, double limit) const
 {
   return std::max(-limit, std::min(record[4 + d] - before[d], limit));

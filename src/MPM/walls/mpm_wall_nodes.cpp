@@ -42,11 +42,8 @@ void MPMWallNodes::topology_changed()
     list_region();
 }
 
-/* ----------------------------------------------------------------------
-   Blocks in which nodes can be held. Around a moving region that is away from the body there is
-   nothing to hold
-------------------------------------------------------------------------- */
-
+/** Blocks in which nodes can be held. Around a moving region that is away from the body there is
+ *  nothing to hold. */
 std::vector<char> MPMWallNodes::blocks_to_look_at() const
 {
   Grid &grid = field.grid;
@@ -69,24 +66,21 @@ std::vector<char> MPMWallNodes::blocks_to_look_at() const
   return looks_at;
 }
 
-/* ----------------------------------------------------------------------
-   Nodes inside the region or on its surface, for the state of the region that it has now.
-
-   When the surface of a moving region crosses a plane of nodes, the nodes are not taken or let go
-   at once, but over half a node spacing outside: a node there goes (1 - s^3)^3 of the way to the
-   velocity of the wall in each step, s = 1 at the end. Material in a grip had no part in the strain
-   of the rest of the body; if it is let go at once, it is not in equilibrium and makes waves as
-   high as the force itself. A node that is taken at once gets the missing momentum in one step.
-   With slow motion the node slips behind the wall before it is let go: by (1 - share)/share of the
-   change that its acceleration gives in each step, which is little at first because of the power of
-   s.
-
-   Implicit steps have no hand-over (moves_and_holds): to go a part of the way is no projection, and
-   in equilibrium a node that goes half the way in each step lags as much as one that is not held.
-   Lines through the surface hold the material in front of it, as for separate. Where there is also
-   material behind, in a grip, single nodes up to half a spacing outside act, fully.
-------------------------------------------------------------------------- */
-
+/** Nodes inside the region or on its surface, for the state of the region that it has now.
+ *
+ *  When the surface of a moving region crosses a plane of nodes, the nodes are not taken or let go
+ *  at once, but over half a node spacing outside: a node there goes (1 - s^3)^3 of the way to the
+ *  velocity of the wall in each step, s = 1 at the end. Material in a grip had no part in the
+ *  strain of the rest of the body; if it is let go at once, it is not in equilibrium and makes
+ *  waves as high as the force itself. A node that is taken at once gets the missing momentum in one
+ *  step. With slow motion the node slips behind the wall before it is let go: by (1 - share)/share
+ *  of the change that its acceleration gives in each step, which is little at first because of the
+ *  power of s.
+ *
+ *  Implicit steps have no hand-over (moves_and_holds): to go a part of the way is no projection,
+ *  and in equilibrium a node that goes half the way in each step lags as much as one that is not
+ *  held. Lines through the surface hold the material in front of it, as for separate. Where there
+ *  is also material behind, in a grip, single nodes up to half a spacing outside act, fully. */
 void MPMWallNodes::list_region()
 {
   Grid &grid = field.grid;
@@ -150,8 +144,6 @@ void MPMWallNodes::list_region()
   if ((!hands_over || wall.moves_and_holds) && !wall.holds_surface()) crossings.take_nodes(nodes);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallNodes::follow_region(double dt)
 {
   if (wall.region->varshape) {
@@ -184,8 +176,6 @@ void LAMMPS_NS::update_motion(MPMWall &wall, std::vector<MPMWallNodes> &fields, 
   if (moves)
     for (auto &list : fields) list.follow_region(dt);
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::size_t MPMWallNodes::first_crossing() const
 {
@@ -263,8 +253,6 @@ void MPMWallNodes::find_water(MPMWallContact &contact, double dt) const
   for (const auto &node : nodes) near[node.node / NODES_PER_BLOCK] = 1;
   contact.find_water(field, near, dt);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMWallNodes::list_ties(std::vector<int64_t> &ties, std::vector<int64_t> &others) const
 {

@@ -76,8 +76,6 @@ MPMWallNodes &MPMWallTrial::nodes()
   });
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallTrial::begin_trials(MPMField &of, double step, double time, double regular, bool rests)
 {
   if (wall.heat.heats())
@@ -210,8 +208,6 @@ bool MPMWallTrial::is_deep(const MPMWallNodes &list, std::size_t node) const
   return !wall.region || -list.nodes[node].distance > MPMWall::DEEPEST * list.field.lattice.h;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallTrial::clear_impulses()
 {
   for (auto &c : constraints) c.impulse = 0.0;
@@ -258,8 +254,6 @@ template <class Use> void MPMWallTrial::visit_active(const Use &use)
     if (c.active && c.n > 0) use(c);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallTrial::add_friction(const double *u, double *force)
 {
   const int dim = field->lattice.dim;
@@ -278,17 +272,15 @@ void MPMWallTrial::add_friction(const double *u, double *force)
   });
 }
 
-/* ----------------------------------------------------------------------
-   Where a line reverses its slip, friction changes its sign within a distance of eps, which a
-   derivative taken farther away does not show: Newton's method would oscillate. Therefore w = s/l,
-   l = (|s|^2 + eps^2)^(1/2), is an unknown of its own, and l w = s is linearized:
-
-     l dw + w s.ds/l = s + ds - l w
-
-   so that friction changes as -mu N (ds - w s.ds/l)/l. This is stiff as long as w, which is a
-   little shorter than one, does not have the direction of s, and never quite soft (T.F. Chan, G.H.
-   Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964, for other sums of lengths).
-------------------------------------------------------------------------- */
+/** Where a line reverses its slip, friction changes its sign within a distance of eps, which a
+ *  derivative taken farther away does not show: Newton's method would oscillate. Therefore w = s/l,
+ *  l = (|s|^2 + eps^2)^(1/2), is an unknown of its own, and l w = s is linearized:
+ *
+ *    l dw + w s.ds/l = s + ds - l w
+ *
+ *  so that friction changes as -mu N (ds - w s.ds/l)/l. This is stiff as long as w, which is a
+ *  little shorter than one, does not have the direction of s, and never quite soft (T.F. Chan, G.H.
+ *  Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964, for other sums of lengths). */
 
 /** Change of direction for a change ds of the slip: (ds - w s.ds/l)/l. */
 void MPMWallTrial::change_of_direction(const MPMContactConstraint &c, const double *slip,
@@ -367,11 +359,8 @@ void MPMWallTrial::add_friction_stiffness(double *stiffness)
   });
 }
 
-/* ----------------------------------------------------------------------
-   At first, everything that is wrong is changed. If this oscillates, only the worst half is
-   changed, and what is almost right stays
-------------------------------------------------------------------------- */
-
+/** At first, everything that is wrong is changed. If this oscillates, only the worst half is
+ *  changed, and what is almost right stays. */
 bool MPMWallTrial::decide(const double *u, double unbalanced)
 {
   if (wall.kind != MPMWall::SEPARATE || unbalanced > 0.0) return false;
@@ -406,11 +395,8 @@ bool MPMWallTrial::decide(const double *u, double unbalanced)
   return changed;
 }
 
-/* ----------------------------------------------------------------------
-   friction at the end of the step, before walls act; its work is that with the final velocities of
-   the nodes
-------------------------------------------------------------------------- */
-
+/** Friction at the end of the step, before walls act; its work is that with the final velocities of
+ *  the nodes. */
 void MPMWallTrial::apply_friction(MPMWallReaction &reaction)
 {
   const int dim = field->lattice.dim;
@@ -430,8 +416,6 @@ void MPMWallTrial::apply_friction(MPMWallReaction &reaction)
   });
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallTrial::act_on_approaches(MPMWallReaction &reaction, MPMWallNodes &list)
 {
   const std::size_t first = list.first_approach();
@@ -439,11 +423,8 @@ void MPMWallTrial::act_on_approaches(MPMWallReaction &reaction, MPMWallNodes &li
     act_on_approach(reaction, list, list.approaches[k], constraints[first + k]);
 }
 
-/* ----------------------------------------------------------------------
-   Holds the normal component at the surface of the material, as in MPMCrossingLines. The wall does
-   no work on the way to it
-------------------------------------------------------------------------- */
-
+/** Holds the normal component at the surface of the material, as in MPMCrossingLines. The wall does
+ *  no work on the way to it. */
 void MPMWallTrial::act_on_approach(MPMWallReaction &reaction, MPMWallNodes &list,
                                    const MPMApproach &line, MPMContactConstraint &c)
 {

@@ -48,10 +48,7 @@ Options MPMRegionMeshOptions::declare()
   return o;
 }
 
-/* ----------------------------------------------------------------------
-   The bytes of a file, which one rank reads, in pieces that a count of MPI can have
-------------------------------------------------------------------------- */
-
+/** The bytes of a file, which one rank reads, in pieces that a count of MPI can have. */
 static std::string read_bytes(LAMMPS *lmp, const char *file)
 {
   constexpr std::size_t PIECE = 1 << 28;
@@ -77,11 +74,8 @@ static std::string read_bytes(LAMMPS *lmp, const char *file)
   return bytes;
 }
 
-/* ----------------------------------------------------------------------
-   region ID mpm/mesh file scale x y z keyword value ...
-   keywords of this style come before those of all regions
-------------------------------------------------------------------------- */
-
+/** Region ID mpm/mesh file scale x y z keyword value ... keywords of this style come before those
+ *  of all regions. */
 RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
 {
   if (narg < 7) utils::missing_cmd_args(FLERR, "region mpm/mesh", error);
@@ -141,10 +135,7 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   if (leaky && comm->me == 0) report(arg[2]);
 }
 
-/* ----------------------------------------------------------------------
-   What is wrong with a leaky surface
-------------------------------------------------------------------------- */
-
+/** What is wrong with a leaky surface. */
 void RegMPMMesh::report(const char *file) const
 {
   const SurfaceHoles &found = mesh->holes;
@@ -187,8 +178,6 @@ RegMPMMesh::~RegMPMMesh()
   if (!copymode) delete[] contact;
 }
 
-/* ---------------------------------------------------------------------- */
-
 int RegMPMMesh::inside(double x, double y, double z)
 {
   if (placing) {
@@ -199,8 +188,6 @@ int RegMPMMesh::inside(double x, double y, double z)
   }
   return mesh->inside({x, y, z});
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Where x is in the coordinates of the mesh: match() takes it back to where the surface was
  *  read. */
@@ -221,10 +208,7 @@ double RegMPMMesh::distance(const double *x, double cutoff, double &along_z)
   return interior ? d : -d;
 }
 
-/* ----------------------------------------------------------------------
-   In 2d cells are columns at the z of the places, which is the same for all
-------------------------------------------------------------------------- */
-
+/** In 2d cells are columns at the z of the places, which is the same for all. */
 bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact, double size,
                                    double &distance)
 {
@@ -265,11 +249,8 @@ bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact,
   return !flat || along_z <= 0.5 * std::fabs(distance);
 }
 
-/* ----------------------------------------------------------------------
-   the closest point of each part of the surface, if x is on the given side and it is within the
-   cutoff
-------------------------------------------------------------------------- */
-
+/** The closest point of each part of the surface, if x is on the given side and it is within the
+ *  cutoff. */
 int RegMPMMesh::touch(const double *x, double cutoff, double side)
 {
   if (leaky)

@@ -28,11 +28,8 @@
 
 using namespace LAMMPS_NS;
 
-/* ----------------------------------------------------------------------
-   fixes that do something to atoms. Of those of this package that have a state the atom style
-   tells; those with names in capitals are LAMMPS's own
-------------------------------------------------------------------------- */
-
+/** Fixes that do something to atoms. Of those of this package that have a state the atom style
+ *  tells; those with names in capitals are LAMMPS's own. */
 static bool acts(const Fix &fix)
 {
   const std::string style = fix.style;
@@ -43,10 +40,7 @@ static bool acts(const Fix &fix)
   return !(fix.restart_global && utils::strmatch(style, "^mpm"));
 }
 
-/* ----------------------------------------------------------------------
-   one line for each: a name and a value, or a fix with its style
-------------------------------------------------------------------------- */
-
+/** One line for each: a name and a value, or a fix with its style. */
 void MPMContinuation::sums(double &mass, double &motion) const
 {
   double mine[2] = {0.0, 0.0}, all[2];
@@ -109,10 +103,7 @@ std::string MPMContinuation::other_lattice() const
   return "";
 }
 
-/* ----------------------------------------------------------------------
-   a fix without a state may have another ID
-------------------------------------------------------------------------- */
-
+/** A fix without a state may have another ID. */
 std::string MPMContinuation::missing_fixes() const
 {
   std::map<std::string, int> found;
@@ -166,8 +157,6 @@ void MPMContinuation::check_materials() const
                    line.substr(9, end - 9), found->second, line.substr(end + 1));
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMContinuation::check(bool first)
 {

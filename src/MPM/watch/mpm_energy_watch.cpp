@@ -53,8 +53,6 @@ static int turn_of(tagint tag, int bits)
   return (int) ((uint64_t) (uint32_t) (number * UINT32_C(2654435769)) >> (32 - bits));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMEnergyWatch::step()
 {
   const bool centers = strain_follows();
@@ -70,17 +68,14 @@ void MPMEnergyWatch::step()
   note_points(parts[1], met, atom->nlocal);
 }
 
-/* ----------------------------------------------------------------------
-   Work of forces in this step, at the mean of the velocities of nodes before and after it, to which
-   these forces have led: that is the way that points went, less half of what the step has changed.
-   Points' own velocities would do where forces belong to masses, as gravity does. Those of flip and
-   aflip differ from point to point from what moves them, however, and a load on the last layers of
-   a body does no work on the difference. With the velocities before the step alone, a load of N
-   steps would have 1/N too little work. To take all points in some steps costs the same, but is
-   wrong where a body of a few cells vibrates: its period is a few of these steps. Forces that
-   elements have added are internal
-------------------------------------------------------------------------- */
-
+/** Work of forces in this step, at the mean of the velocities of nodes before and after it, to
+ *  which these forces have led: that is the way that points went, less half of what the step has
+ *  changed. Points' own velocities would do where forces belong to masses, as gravity does. Those
+ *  of flip and aflip differ from point to point from what moves them, however, and a load on the
+ *  last layers of a body does no work on the difference. With the velocities before the step alone,
+ *  a load of N steps would have 1/N too little work. To take all points in some steps costs the
+ *  same, but is wrong where a body of a few cells vibrates: its period is a few of these steps.
+ *  Forces that elements have added are internal. */
 void MPMEnergyWatch::moved()
 {
   const double half = 0.5 * fields[0]->step_dt();
@@ -166,8 +161,6 @@ void MPMEnergyWatch::choose_turns(const Sums &now)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
 {
   const MPMPointEnergies points = point_energies(lmp);
@@ -203,18 +196,13 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
-/* ----------------------------------------------------------------------
-   Velocities that steps have led to belong to the middle of the last step, as their work does, see
-   moved(). With usl and musl stored energy belongs to its end, where points are, and their sum
-   would vary with each vibration by omega dt of its energy: by 4 % for a block of 4 by 6 cells. The
-   mean of stored energies before and after the step belongs to its middle, and with it the sum is
-   that of a leapfrog, which is constant: with forces f and ways s of steps, half of the sum of f_k
-   (s_k + s_k+1) is half of that of (f_k-1 + f_k) s_k, but for its ends. With usf stress is a step
-   behind, with usavg in the middle
-------------------------------------------------------------------------- */
-
+/** Velocities that steps have led to belong to the middle of the last step, as their work does, see
+ *  moved(). With usl and musl stored energy belongs to its end, where points are, and their sum
+ *  would vary with each vibration by omega dt of its energy: by 4 % for a block of 4 by 6 cells.
+ *  The mean of stored energies before and after the step belongs to its middle, and with it the sum
+ *  is that of a leapfrog, which is constant: with forces f and ways s of steps, half of the sum of
+ *  f_k (s_k + s_k+1) is half of that of (f_k-1 + f_k) s_k, but for its ends. With usf stress is a
+ *  step behind, with usavg in the middle. */
 bool MPMEnergyWatch::strain_follows() const
 {
   return std::none_of(fields.begin(), fields.end(), [](const MPMField *field) {
@@ -244,8 +232,6 @@ void MPMEnergyWatch::center_start()
   run.lowest -= change;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMEnergyWatch::begin(const Sums &now)
 {
   run.start = now;
@@ -263,11 +249,8 @@ bool MPMEnergyWatch::is_round_off(double energy) const
   return energy < ROUND_OFF * sqrt((double) run.steps + 1.0) * all;
 }
 
-/* ----------------------------------------------------------------------
-   points that other commands have added or removed bring or take energy that is in no account; that
-   of points which fixes of this package emit and absorb is in the ledger
-------------------------------------------------------------------------- */
-
+/** Points that other commands have added or removed bring or take energy that is in no account;
+ *  that of points which fixes of this package emit and absorb is in the ledger. */
 void MPMEnergyWatch::check()
 {
   const Sums now = sums();
@@ -297,8 +280,6 @@ void MPMEnergyWatch::check()
   if (comm->me == 0)
     error->warning(FLERR, "{}; fix mpm ... gain sets what is done, and from which share on", text);
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string MPMEnergyWatch::report() const
 {
