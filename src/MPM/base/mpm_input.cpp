@@ -10,7 +10,6 @@
 
 #include "law/plugin.h"
 
-#include "base/mpm_broadcast.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"

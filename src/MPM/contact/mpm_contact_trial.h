@@ -13,7 +13,7 @@
 #include "contact/mpm_contact_lines.h"
 #include "contact/mpm_contact_report.h"
 #include "contact/mpm_contact_search.h"
-#include "field/mpm_body_contact.h"
+#include "field/mpm_trial_contact.h"
 #include "pointers.h"
 
 #include <vector>

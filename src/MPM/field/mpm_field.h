@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_FIELD_H
 #define LMP_MPM_FIELD_H
 
-#include "base/mpm_cycle.h"
+#include "base/mpm_step_limit.h"
 #include "field/mpm_field_options.h"
 #include "field/mpm_jacobians.h"
 #include "field/mpm_ledger.h"

@@ -30,7 +30,7 @@
 #include "base/mpm_points.h"
 #include "domain.h"
 #include "error.h"
-#include "field/mpm_frame_total.h"
+#include "field/mpm_frame.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_point_map.h"
 #include "force.h"

@@ -19,7 +19,7 @@
  *  The affine matrix C, the gradient with respect to X, becomes C F_R^-1, and so do the gradients
  *  of other physics. Stress, velocities, and energies of points do not change. */
 
-#include "field/mpm_frame_total.h"
+#include "field/mpm_frame.h"
 
 #include "base/mpm_points.h"
 #include "base/mpm_state.h"

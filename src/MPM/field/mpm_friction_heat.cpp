@@ -25,7 +25,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_conductivity.h"
 #include "field/mpm_field.h"
-#include "field/mpm_heat_sink.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_passes.h"
 #include "fix.h"
 #include "force.h"

@@ -10,8 +10,8 @@
 
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
-#include "field/mpm_edges.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_nodes.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_stencil.h"

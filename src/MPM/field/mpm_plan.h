@@ -10,8 +10,8 @@
 #define LMP_MPM_PLAN_H
 
 #include "base/mpm_stage_list.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
-#include "field/mpm_watch.h"
 #include "pointers.h"
 
 #include <functional>

@@ -9,7 +9,6 @@
 #include "implicit/mpm_constraints.h"
 
 #include "contact/mpm_ties.h"
-#include "field/mpm_body_contact.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_trial_contact.h"

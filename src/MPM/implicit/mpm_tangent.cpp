@@ -26,7 +26,6 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_time_limit.h"
-#include "field/mpm_trial_forces.h"
 #include "force.h"
 #include "implicit/mpm_tangent_gather.h"
 #include "material/batch_kernels.h"

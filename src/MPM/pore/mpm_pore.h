@@ -12,7 +12,7 @@
 #include "base/mpm_rows.h"
 #include "diffusion/mpm_layer_mean.h"
 #include "diffusion/mpm_node_scalar.h"
-#include "field/mpm_node_pressure.h"
+#include "field/mpm_forces.h"
 #include "pointers.h"
 #include "pore/mpm_pore_motion.h"
 #include "pore/mpm_pore_soil.h"

@@ -8,7 +8,7 @@
 
 #include "pore/mpm_pore_options.h"
 
-#include "base/mpm_steps_or_auto.h"
+#include "base/mpm_options.h"
 
 #include <algorithm>
 

@@ -25,7 +25,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_halo.h"
-#include "field/mpm_listed_points.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
@@ -42,7 +42,7 @@
 #include "watch/mpm_continuation.h"
 #include "watch/mpm_energy_watch.h"
 #include "watch/mpm_fracture_watch.h"
-#include "watch/mpm_point_extremes.h"
+#include "watch/mpm_point_summary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@
 #include "comm.h"
 #include "error.h"
 #include "field/mpm_field.h"
-#include "field/mpm_fluid.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_internal_force.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"

@@ -16,8 +16,8 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #define LMP_FIX_MPM_BOUNDARY_H
 
 #include "field/mpm_friction_heat.h"
-#include "field/mpm_line_ties.h"
 #include "field/mpm_node_action.h"
+#include "field/mpm_trial_contact.h"
 #include "fix.h"
 #include "walls/mpm_contact_search.h"
 #include "walls/mpm_thin_regions.h"

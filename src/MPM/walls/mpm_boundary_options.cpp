@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "walls/mpm_boundary_options.h"
+#include "walls/mpm_wall.h"
 
 #include "math_extra.h"
 

@@ -13,7 +13,7 @@
  *  find how the material has moved to its present position: then the chord is that of the step that
  *  has ended, (I - R^-1)(x - o)/dt, whose matrix is minus the transpose of the other one. */
 
-#include "walls/mpm_wall_motion.h"
+#include "walls/mpm_wall.h"
 
 #include "math_extra.h"
 

@@ -21,7 +21,7 @@
 #include "math/matrix.h"
 #include "neighbor.h"
 #include "update.h"
-#include "watch/mpm_point_energies.h"
+#include "watch/mpm_point_summary.h"
 
 #include <algorithm>
 #include <cmath>
