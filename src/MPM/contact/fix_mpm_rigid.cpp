@@ -39,7 +39,7 @@
 #include "modify.h"
 #include "update.h"
 #include "walls/mpm_patch_sums.h"
-#include "walls/mpm_region_body.h"
+#include "walls/mpm_region_cut.h"
 #include "walls/region_mpm_mesh.h"
 
 #include <Eigen/Dense>

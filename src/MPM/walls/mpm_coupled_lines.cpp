@@ -22,7 +22,7 @@
 // Where material sticks, each prescribed component has these equations on its own, with 1 in place
 // of n_r.
 
-#include "walls/mpm_coupled_lines.h"
+#include "walls/mpm_crossing_lines.h"
 
 #include "field/mpm_field.h"
 #include "math/sets.h"

@@ -6,6 +6,21 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
+#include "walls/mpm_mirror_nodes.h"
+
+#include "domain.h"
+#include "field/mpm_field.h"
+#include "walls/mpm_line_constraint.h"
+#include "walls/mpm_wall.h"
+#include "walls/mpm_wall_reaction.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
 /* The projection of mirror planes is derived in the README of this room. Its impulse on the body
  *  is
  *    -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
@@ -31,21 +46,6 @@
  *
  *  AFLIP leaves v_old alone, too: with affine matrices, a vibration loses nothing, and a constraint
  *  on v_old would create energy, see DECISIONS.md. PIC and APIC have no use for v_old. */
-
-#include "walls/mpm_mirror_nodes.h"
-
-#include "domain.h"
-#include "field/mpm_field.h"
-#include "walls/mpm_line_constraint.h"
-#include "walls/mpm_wall.h"
-#include "walls/mpm_wall_reaction.h"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
-using namespace LAMMPS_NS;
-using namespace MPM_NS;
 
 static constexpr double HEAVY = 0.500001;    // share of one node in the mass of mirror images
 
@@ -580,4 +580,63 @@ void MPMPredictedVelocities::reset(int64_t nnodes)
   held.assign(3 * nnodes, 0.0);
   mirrored.assign(3 * nnodes, 0);
   mirrors.clear();
+}
+
+MPMBoxFace::MPMBoxFace(const MPMField &field, const Domain &box, int face) :
+    axis(face / 2), inward(face % 2 ? -1 : 1)
+{
+  const double x = position(box);
+  const double h = field.lattice.h, origin = field.lattice.origin[axis];
+  plane = (int) std::lround((x - origin) / h);
+  const double plane_x = origin + plane * h;
+  cut = std::fabs(x - plane_x) > MPMWall::ON_SURFACE * h;
+  if (cut) nweight = MPMLineConstraint::weights_at(field, axis, inward, x, first, weight);
+  contact = contact_of(field, x);
+}
+
+double MPMBoxFace::position(const Domain &box) const
+{
+  return inward > 0 ? box.boxlo[axis] : box.boxhi[axis];
+}
+
+static constexpr double FILLED = 0.4;    // share of the volume in reach of the node in front
+
+MPMContactDistance MPMBoxFace::contact_of(const MPMField &field, double x) const
+{
+  if (!cut) {
+    const bool folded = field.options.modified_edges;    // see MPMEdges::fold()
+    const double at[2] = {0.0, -1.0}, weights[2] = {1.0, 2.0};
+    return {field, at, weights, folded ? 2 : 1};
+  }
+  double at[4];
+  const double face = (x - field.lattice.origin[axis]) / field.lattice.h;
+  for (int k = 0; k < nweight; k++) at[k] = inward * (first + k - face);
+  return {field, at, weight, nweight};
+}
+
+void MPMBoxFace::add_line(const MPMField &field, const int *index)
+{
+  const auto at = [&](int along) {
+    int k[3] = {index[0], index[1], index[2]};
+    k[axis] = along;
+    return field.grid.locate(k);
+  };
+  if (cut) {
+    MPMFaceLine line;
+    line.axis = axis;
+    line.n = nweight;
+    std::copy_n(weight, nweight, line.weight);
+    for (int j = 0; j < nweight; j++) line.node[j] = at(first + j);
+    if (line.is_complete()) lines.push_back(line);    // else out of reach of points, as is the face
+    return;
+  }
+  MPMMirrorColumn column;
+  column.node[0] = at(plane);
+  for (int j = 1; j <= MPMMirrorColumn::DEPTH; j++) {
+    int64_t &inside = column.node[j], &image = column.node[MPMMirrorColumn::DEPTH + j];
+    inside = at(plane + inward * j);
+    image = at(plane - inward * j);
+    if (inside < 0 || image < 0) inside = image = -1;    // both out of reach of points
+  }
+  columns.push_back(column);
 }

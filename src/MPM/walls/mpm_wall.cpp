@@ -17,7 +17,7 @@
 #include "modify.h"
 #include "region.h"
 #include "update.h"
-#include "walls/mpm_region_motion.h"
+#include "walls/mpm_region_surface.h"
 #include "walls/mpm_wall_gap.h"
 
 #include <algorithm>
@@ -237,4 +237,193 @@ std::function<double(const double *)> MPMWall::distance_from_region(const MPMFie
     for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
     return surface->gap(y, far, h);
   };
+}
+
+/* Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
+ *  tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
+ *  every point outward by a factor sqrt(1 + (omega dt)^2) per step, and the chord puts it back on
+ *  its circle exactly, since splines reproduce linear fields. USF asks for velocities first, to
+ *  find how the material has moved to its present position: then the chord is that of the step that
+ *  has ended, (I - R^-1)(x - o)/dt, whose matrix is minus the transpose of the other one. */
+
+void MPMWallMotion::begin(const MPMWallState &state)
+{
+  *this = {};
+  uniform = true;
+  MathExtra::copy3(state.shift, before);
+  std::copy_n(state.gradient[0], 9, gradient_before[0]);
+  MathExtra::copy3(state.origin, origin_before);
+}
+
+/** Gradient = (R - I)/dt for a rotation about a unit axis through o. */
+void MPMWallMotion::rotate(double angle, const double *u, const double *o, double dt)
+{
+  uniform = false;
+  MathExtra::copy3(o, origin);
+  const double s = sin(angle) / dt, half = sin(0.5 * angle);
+  const double c = 2.0 * half * half / dt;    // (1 - cos)/dt
+  const double K[3][3] = {{0.0, -u[2], u[1]}, {u[2], 0.0, -u[0]}, {-u[1], u[0], 0.0}};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      gradient[i][j] = s * K[i][j] + c * (u[i] * u[j] - (i == j ? 1.0 : 0.0));
+}
+
+/** Nodes have moved from X to x = X + T X + m, so s + G (x - o) becomes s + G (m - o) + (G + G T)
+ *  X. */
+void MPMWallMotion::refer_to_start(MPMWallState &state, double dt)
+{
+  std::copy_n(state.turned[0], 9, turned[0]);
+  MathExtra::copy3(state.moved, moved);
+  if (!uniform) {
+    double product[3][3];
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        shift[i] += gradient[i][j] * (moved[j] - origin[j]);
+        product[i][j] = gradient[i][j];
+        for (int k = 0; k < 3; k++) product[i][j] += gradient[i][k] * turned[k][j];
+      }
+    std::copy_n(product[0], 9, gradient[0]);
+    std::fill_n(origin, 3, 0.0);
+  }
+  for (int i = 0; i < 3; i++) {
+    state.moved[i] += dt * shift[i];
+    for (int j = 0; j < 3; j++) state.turned[i][j] += dt * gradient[i][j];
+  }
+}
+
+/** Velocity during the step of the material that is at x at its end. It came from y, x = y + dt (s
+ *  + G (y - o)): with R = 1 + dt G, s + G R^T (x - o - dt s), G R^T = -G^T. */
+MPMWallMotion MPMWallMotion::at_end_of_step(double dt) const
+{
+  MPMWallMotion end = *this;
+  for (int i = 0; i < 3; i++) {
+    end.origin[i] += dt * shift[i];
+    for (int j = 0; j < 3; j++) end.gradient[i][j] = -gradient[j][i];
+  }
+  return end;
+}
+
+void MPMWallMotion::end(MPMWallState &state) const
+{
+  MathExtra::copy3(shift, state.shift);
+  std::copy_n(gradient[0], 9, state.gradient[0]);
+  MathExtra::copy3(origin, state.origin);
+}
+
+void MPMWallMotion::velocity(const double *x, double *v) const
+{
+  MathExtra::copy3(shift, v);
+  if (uniform) return;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) v[i] += gradient[i][j] * (x[j] - origin[j]);
+}
+
+void MPMWallMotion::velocity(const Grid &grid, int64_t node, double *v) const
+{
+  double x[3];
+  if (!uniform) grid.node_position(node, x);
+  velocity(x, v);
+}
+
+/** Half of the change of the velocity of the wall, at the node, since the last step. An impulse R
+ *  dt of the wall takes its node from the velocity u to v, with which points then go from x to x'.
+ *  It adds R dt (u + v)/2 to the kinetic and stored energy, up to terms that the next step cancels,
+ *  as the forces at x do work on half of the way to x and half of the way to x'. R dt v would
+ *  differ from it by R (v - u) dt/2 in each step, which adds up where a mass is shaken. */
+void MPMWallMotion::half_change(const Grid &grid, int64_t node, double *v) const
+{
+  double x[3];
+  for (int d = 0; d < 3; d++) v[d] = 0.5 * (shift[d] - before[d]);
+  if (uniform) return;
+  grid.node_position(node, x);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      v[i] += 0.5 *
+          (gradient[i][j] * (x[j] - origin[j]) - gradient_before[i][j] * (x[j] - origin_before[j]));
+}
+
+/** The part of old velocities relative to the wall that counts as consistent with it, see
+ *  mpm_mirror_nodes.cpp. */
+double MPMWallMotion::old_relative(const double *record, int d, double limit) const
+{
+  return std::max(-limit, std::min(record[4 + d] - before[d], limit));
+}
+
+void MPMWallMotion::position(const double *X, double *x) const
+{
+  for (int i = 0; i < 3; i++) x[i] = X[i] + moved[i] + MathExtra::dot3(turned[i], X);
+}
+
+/** Fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values */
+Options MPMBoundaryOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/boundary");
+  o.argument(word(kind, {{"stick", STICK}, {"slip", SLIP}, {"separate", SEPARATE}}, "kind"));
+  o.add("friction",
+        {number(friction, "mu", NOT_NEGATIVE, "1",
+                "coefficient of Coulomb friction, for *slip* and *separate*")});
+  heat.declare(o, "the energy lost by friction becomes heat of the material",
+               "share of this energy that becomes heat of the material");
+  o.add("velocity",
+        {variables(velocity, 3, "vx vy vz", "velocity",
+                   "velocity of the wall, can be variables (see below); with *stick*, NULL leaves "
+                   "a component free",
+                   true)})
+      .once();
+  o.add("displacement",
+        {variables(velocity, 3, "ux uy uz", "distance",
+                   "displacement of the wall since this fix was defined, instead of its velocity; "
+                   "can be variables; with "
+                   "*stick*, NULL leaves a component free",
+                   true)})
+      .then([this] {
+        by_displacement = true;
+      })
+      .once()
+      .standard("none");
+  o.add("rotate",
+        {numbers(center, 3, "ox oy oz", ANY_NUMBER, "distance", "a point on the axis of rotation"),
+         numbers(axis, 3, "ax ay az", ANY_NUMBER, "", "direction of the axis"),
+         variables(&rate, 1, "rate", "radians/time",
+                   "angular velocity, can be a variable (see below)")})
+      .once()
+      .standard("none");
+  o.add("field",
+        {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` on which this fix acts")})
+      .standard("all");
+  o.refuse([=] {
+    return OptionRules{
+        {kind == STICK, "friction", "needs kind slip or separate"},
+        {heat.heats() && friction == 0.0, "heat", "is that of friction, which needs a coefficient"},
+        {kind != STICK && !all_given(), "velocity", "allows NULL only with kind stick"},
+        {!velocity[0].given && !velocity[1].given && (dim == 2 || !velocity[2].given), "velocity",
+         "leaves all components free"},
+        {dim == 2 && (!velocity[2].variable.empty() || velocity[2].value != 0.0), "velocity",
+         "must have the component 0 along z in 2d: {velocity}"},
+        {kind != STICK && !all_given(), "displacement", "allows NULL only with kind stick"},
+        {!velocity[0].given && !velocity[1].given && (dim == 2 || !velocity[2].given),
+         "displacement", "leaves all components free"},
+        {dim == 2 && (!velocity[2].variable.empty() || velocity[2].value != 0.0), "displacement",
+         "must have the component 0 along z in 2d: {displacement}"},
+        {MathExtra::len3(axis) == 0.0, "rotate", "needs an axis of non-zero length"},
+        {dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0), "rotate", "needs an axis along z in 2d"},
+        {!all_given(), "rotate", "prescribes all components of the velocity"}};
+  });
+  return o;
+}
+
+bool MPMBoundaryOptions::is_driven() const
+{
+  return rotating() || std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
+           return v.value != 0.0 || !v.variable.empty();
+         });
+}
+
+bool MPMBoundaryOptions::has_variables() const
+{
+  return !rate.variable.empty() ||
+      std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
+        return !v.variable.empty();
+      });
 }

@@ -120,7 +120,8 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
   bool looks_ahead = false;        ///< looks for material that comes to the wall in implicit steps
   bool moves_and_holds = false;    ///< a moving region holds material by lines in implicit steps
   bool looks_for_thin_places = true;    ///< no such place has been reported yet
-  bool is_grip = false;    ///< the material inside moves with the region, see mpm_wall_grip.cpp
+  bool is_grip =
+      false;    ///< the material inside moves with the region, see MPMWallTrial::find_carried()
 
   MPMWall(class LAMMPS *lmp, const std::string &id) : Pointers(lmp), id(id) {}
 
