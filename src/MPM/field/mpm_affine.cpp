@@ -6,15 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// First values of affine matrices come from the velocities of the points. A point that has not
-// moved yet has no affine matrix, and those of points whose velocities were changed by a command
-// between runs belong to the motion before. With zero in their place, the first step would take a
-// part of the energy of a rotation (2 % for a disk of 10 cells). The matrix of a point is the slope
-// of the velocities around it, by least squares weighted with mass and shape functions: with the
-// mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
+// First values of affine matrices are slopes of the velocities around a point, by least squares:
+// with the mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
 //   C = [sum_i N_i m_i <(v - <v>_i) (x - <x>_i)>_i] [sum_i N_i m_i <(x - <x>_i) (x - <x>_i)>_i]^+.
-// It is exact for fields that vary linearly, also at the surface of a body. Directions in which the
-// points around have no extent get no slope (pseudo-inverse).
+// It is exact for linear fields. With zero, the first step would take a part of the energy of a
+// rotation (2 % for a disk of 10 cells).
 
 #include "field/mpm_affine.h"
 

@@ -6,13 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Points of fix mpm that have a size: boxes along the axes (gimp and cpgimp), and domains (cpdi and
-// cpdi2), see transfer/cpdi.h.
-//
-// Domains of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that
-// move with the nodes' velocities. Domains stay the same throughout a step. A tile has the
-// neighbors of its block on all sides, but only those blocks are active that corners can reach
-// soon: whether they still do is checked at the start of each step.
+// Domains of cpdi have the half edges F r_0; those of cpdi2 are corners that move with the nodes.
+// Only those blocks are active that corners can reach soon, which each step checks.
 
 #include "field/mpm_cpdi.h"
 
@@ -49,10 +44,8 @@ double LAMMPS_NS::half_size(const MPMField &field, int i)
   return 0.5 * (field.lattice.dim == 3 ? cbrt(section) : sqrt(section)) / field.lattice.h;
 }
 
-/** Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous
- *  one follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along
- *  axis d those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and
- *  rotation this is F_dd l_d, and a cube that just turns keeps its size. */
+/** A contiguous box of half sizes l has the second moments F diag(l^2) F^T/3, which along axis d
+ *  are those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. */
 void MPMBoxes::update()
 {
   sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);

@@ -6,14 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Grains and atoms that need a smaller time step take several under one of the material points.
-//
-// Between two steps of the cycle, points move with their constant velocity, so that what they touch
-// sees them move smoothly, and their forces add up. The cycle then starts from where they were in
-// the middle of these steps, with the mean of the forces: it gives them the impulse that they have
-// received, to round-off. On a linear spring this mean is the force at the middle, and K steps are
-// one of leapfrog, which keeps the energy; with the place at their start they would be damped, by a
-// part (K - 1)/(2 K) (omega dt)^2 of the energy in each step dt of the cycle.
+// Grains and atoms may take several steps under one of the material points. Between two steps of
+// the cycle points move with constant velocity, and their forces add up. The cycle starts from
+// where they were in the middle of these steps, with the mean of the forces, which keeps the energy
+// of a spring as leapfrog does: from the place at their start, (K - 1)/(2 K) (omega dt)^2 of it
+// would be lost.
 
 #include "field/mpm_every.h"
 

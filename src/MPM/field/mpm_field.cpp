@@ -172,10 +172,8 @@ void MPMField::find_materials()
   work.history.resize((std::size_t) nhistory * BATCH);
 }
 
-/** Velocities of nodes that were mapped back have contact decided by those of the step, and no
- *  impulse of their own. When points moved with them, a tool without friction that was drawn
- *  through a body felt nearly twice its force, and a cone that is a separating wall 5 % too little
- *  at 1.2 cells of depth. */
+/** Velocities that were mapped back have contact decided by those of the step, and no impulse of
+ *  their own: points that moved with them felt wrong forces (step/DECISIONS.md). */
 static bool is_in_contact(const MPMField &field)
 {
   const auto actions = find_fixes<MPMNodeAction>(field.lmp);
@@ -364,9 +362,8 @@ bool MPMField::has_contact() const
 }
 
 /** Fixes can be defined in any order, and come and go between runs: this is found anew for each
- *  run. Where bodies touch by fix mpm/contact, edges give way more with gradients (a block of 6
- *  cells on a base sinks by 14 % more than with one lattice for both, in the place of 8 %), and
- *  pressures of pore water scatter more. */
+ *  run. Where bodies touch, edges give way more with gradients, and pressures of pore water
+ *  scatter more. */
 void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
 {
   const bool alone = !has_contact() && find_fixes<MPMPorePressure>(lmp).empty();

@@ -32,13 +32,8 @@ void MPMFrame::load(Batch &b, int first, int n, double dt, const double *L, cons
 
 /** USF takes the gradient of the velocity that has brought the points to where they are, with
  *  respect to these positions: dx = (I - dt L)^-1 dx_old. Laws expect dx = (I + dt L') dx_old, so
- *  L' = L (I - dt L)^-1. With L itself, a body that turns by an angle a in a step would seem to
- *  grow by 2 a^2 in area and shrink in answer to that, by 2.4 % per revolution of 3300 steps.
- *
- *  USAVG goes half of the way with each of two gradients. Half of the motion I + dt L is, to third
- *  order and as an exact rotation for a spin, the Cayley transform of half of the mid-step
- *  gradient: I + dt/2 L (I + dt/4 L)^-1, and with the gradient at the end I + dt/2 L (I - 3 dt/4
- *  L)^-1. So all of these are L (I - shift L)^-1, and the time steps of the law add up to dt. */
+ *  L' = L (I - dt L)^-1. For USAVG, which goes half of the way with each of two gradients, the
+ *  Cayley transform has I + dt/2 L (I + dt/4 L)^-1 and I + dt/2 L (I - 3 dt/4 L)^-1. */
 void MPMFrame::shift_gradients(int n, double dt, double *gradients) const
 {
   if (field.lattice.dim == 2) {    // by Cayley-Hamilton

@@ -6,25 +6,12 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* Bodies of revolution in 2d: x is the distance r from the axis, y the place along it, zz the
- *  direction around it. A point is a ring; its volume, mass, forces, and energies are those of the
- *  whole ring (D. Sulsky, H.L. Schreyer, Comput. Methods Appl. Mech. Eng. 139 (1996) 409; for
- *  points of finite size J.A. Nairn, J.E. Guilkey, Int. J. Numer. Methods Eng. 101 (2015) 127).
+/* Bodies of revolution in 2d: x is the distance r from the axis, points are rings, and zz is the
+ *  direction around it (D. Sulsky, H.L. Schreyer, Comput. Methods Appl. Mech. Eng. 139 (1996) 409;
+ *  points of finite size: J.A. Nairn, J.E. Guilkey, Int. J. Numer. Methods Eng. 101 (2015) 127).
+ *  Beyond plane strain there are a strain rate and a force, conjugate to each other,
  *
- *  Beyond plane strain there are a strain rate and a force, which are conjugate to each other,
- *
- *    L_zz = sum_i N_ip v_ir / r_p,   f_ir = ... - sum_p V_p sigma_zz N_ip / r_p
- *
- *  The force is distributed like an external one, so that the kernels of plane strain serve. As
- *  shape functions reproduce linear fields, v_r = a r gives the strain rate a in all directions at
- *  any place, also next to the axis. With points on a regular array that fills whole cells, a
- *  uniform stress makes no force on the nodes inside, sum_p [r_p dN/dr + N] = 0, for B-splines of
- *  any order; next to the axis this holds for linear functions and GIMP, while for the others the
- *  sum over points has the error of the midpoint rule there, as r N is a cubic of r.
- *
- *  At the axis, v_r is odd and v_r / r no larger than the slope of v_r: the wall there holds the
- *  velocities of nodes beyond the axis to minus those inside. The greatest frequency of the lattice
- *  with it is at most 3 % above that in the plane, less than what the limit h/c has to spare. */
+ *    L_zz = sum_i N_ip v_ir / r_p,   f_ir = ... - sum_p V_p sigma_zz N_ip / r_p */
 
 #include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"

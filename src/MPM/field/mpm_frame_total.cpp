@@ -6,18 +6,13 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* The reference configuration of the total frame, and its updates.
- *
- *  With reference update S, the present configuration becomes the reference one when the ratio of
- *  the principal stretches of some point since the last time is above S: X = x and R = F, the
- *  deformation gradient then. What happens on the lattice knows the deformation since then only,
- *  F_R = F R^-1, while laws see all of F. As V0 is that of the undeformed body,
+/* With reference update S, the present configuration becomes the reference one when the ratio of
+ *  the principal stretches of some point since the last time is above S: X = x, R = F. Nodes know
+ *  the deformation F_R = F R^-1 since then, while laws see all of F:
  *
  *    f_i = -sum V0 tau F_R^-T grad N,   F <- F + dt (grad v) R
  *
- *  are the equations of a body with the initial volume V0 det R and the deformation gradient F_R.
- *  The affine matrix C, the gradient with respect to X, becomes C F_R^-1, and so do the gradients
- *  of other physics. Stress, velocities, and energies of points do not change. */
+ *  The affine matrix C, a gradient with respect to X, becomes C F_R^-1. */
 
 #include "field/mpm_frame.h"
 

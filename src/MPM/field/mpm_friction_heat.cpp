@@ -6,13 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* The kinetic energy of a node changes in a step by all impulses on it times the mean of its old
- *  and its new velocity. The part of a tangential impulse J_t between bodies of relative velocity u
- *  is J_t . (u_old + u_new)/2, and what slides loses that as heat, exactly. With the velocities
- *  just before and after the impulse it would be more: before it, the shear stress has accelerated
- *  the node, by tau dt/(rho h), which is not small against the sliding velocity in stiff bodies,
- *  and which friction takes back in each step. Where bodies stick there is no heat: what is lost
- *  there is numerical, and of the order of the step. */
+/* A tangential impulse J_t between bodies of relative velocity u takes the kinetic energy
+ *  J_t . (u_old + u_new)/2 from the nodes, which is the heat where the bodies slide. */
 
 #include "field/mpm_friction_heat.h"
 

@@ -67,14 +67,8 @@ double MPMNodes::memory_usage() const
 
 // B-splines that are modified next to fixed faces (keyword edges of fix mpm), so that the nodes
 // inside of the box and on its faces alone reproduce linear fields (M. Steffen, R.M. Kirby, M.
-// Berzins, Int. J. Numer. Meth. Eng. 76 (2008) 922).
-//
-// A node outside has the value that continues those of the two nodes before it, f_-1 = 2 f_0 - f_1.
-// In terms of functions, N_0 + 2 N_-1 and N_1 - N_-1 take the place of N_0, N_1 and N_-1: at the
-// distance x from the face 1 - x + x^3/6 and x - x^3/3 (cubic, up to one node spacing) or 1 - x and
-// x (quadratic, up to half of it), which are not negative. So no kernel needs to know of it: sums
-// at nodes outside are folded to the two nodes inside, and values continued to them before they are
-// interpolated.
+// Berzins, Int. J. Numer. Meth. Eng. 76 (2008) 922): a node outside has the value f_-1 = 2 f_0 -
+// f_1. In terms of functions, N_0 + 2 N_-1 and N_1 - N_-1 take the place of N_0, N_1, and N_-1.
 
 void MPMEdges::check() const
 {

@@ -6,28 +6,13 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* A cell of a fluid has several points, each with a volume of its own, but the forces on its nodes
- *  know only some means of their pressure. What is not in these means stays in the points for good:
- *  nothing flows because of it. It comes from where the strain that the nodes can describe is not
- *  that of the fluid: within one or two cells of a body that deforms, which shares the functions of
- *  the nodes with the fluid, of a free surface, and of the walls. There it is a strain of the order
- *  of that of the body, whatever the node spacing is, and the pressure of a liquid is its bulk
- *  modulus times that.
- *
- *  Of q = J - 1 of the points, with initial volumes V and functions N,
+/* Of q = J - 1 of the points of a fluid, with initial volumes V and functions N,
  *
  *    S q_p = sum_i N_ip (P_i q)(x_p)
  *
  *  is what the nodes see: P_i is the linear function of the place that fits q best around node i,
- *  by least squares with the weights N_iq V_q. S keeps constant and linear fields, also next to
- *  surfaces and walls, and so the pressure of a liquid at rest. V S is symmetric, and the norm of S
- *  is 1 or less, as N_ip sum to one: sum V q (the volume of the fluid) and sum V x q do not change,
- *  and the energy of compression does not grow. A wave with the wave number k loses a share of the
- *  order of (k h)^4.
- *
- *  q goes towards S q by the share that the user gives in the time in which sound crosses a cell.
- *  Errors that keep coming, at a rate of strain e, are then of the order of e h/c: they vanish with
- *  the node spacing. */
+ *  by least squares with the weights N_iq V_q. q goes towards S q by the share that the user gives
+ *  in the time in which sound crosses a cell. Why: see DECISIONS.md. */
 
 #include "field/mpm_smoothing.h"
 
@@ -53,7 +38,6 @@ using namespace MPM_NS;
 // mean square distance of points around a node along a direction, in node spacings squared, that
 // allows for a slope; of points on a regular array it is 0.25 inside a body, and 0 of a single row
 // of them
-
 static constexpr double MIN_EXTENT = 1.0e-8;
 
 void MPMSmoothing::init()

@@ -21,34 +21,14 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** A point at the distance e h from a face of its cell gives the nodes beyond it the mass e m and,
- *  with linear functions, the force V sigma/h: an acceleration sigma/(rho h e) without bound. The
- *  momentum m_i a_i of such a node is bounded, and so is what points get of it. The velocity
- *  gradient is not: it takes v_i with the weight 1/h. If it makes the stress (USL) or is stored in
- *  the affine matrix, then such a node is a mass e m on a spring E V/h^2, and the limit of the time
- *  step is of the order of e^1/2 h/c. B-splines of higher order and GIMP have gradients that vanish
- *  with the function (N = e^2/2 and h grad N = e), the ratio of stiffness and mass stays what it
- *  is.
- *
- *  The cure: for the gradient (and the affine matrix), and for nothing else, a node that has the
- *  share s < light of the material of a full cell moves with
+/** For the velocity gradient and the affine matrix alone, a node that has the share s < light of
+ *  the material of a full cell moves with
  *
  *    (s/light) v_i + (1 - s/light) <v>_i,    <v>_i = sum_p V_p N_ip v_p / sum_p V_p N_ip
  *
- *  with the new velocities v_p of the points, as all nodes do in MUSL. The spring then has at least
- *  the mass of a node with the share light. Momenta, of nodes and of points, are not touched, so
- *  that linear momentum is conserved exactly; angular momentum is as without, but for the affine
- *  matrices of the points next to light nodes. The work of the internal force on the light nodes
- *  differs from that of the stress; the ledger has the difference in its integration entry. Volumes
- *  rather than masses are what tells how full a cell is, because bodies of any density may meet at
- *  a node; with an axis of symmetry areas in the plane, as the ring of a node far from the axis is
- *  heavy whatever share of its cells is full, and so is the force on it. Strain around the axis
- *  needs no cure: v_i has the weight N/r there, not 1/h, and stays that of the motion.
- *
- *  With the averages against locking, force and strain are further from belonging together. Where
- *  the affine matrix feeds the difference back in the same step, USL, points at the edge gain
- *  energy in bursts, by 1000 times in 6000 steps at half of the limit of the time step; MUSL, and
- *  FLIP, damp as without. The same is seen of USF in axisymmetric runs. */
+ *  with the new velocities v_p of the points. Momenta are not touched. Volumes tell how full a cell
+ *  is, as bodies of any density may meet at a node; with an axis of symmetry, areas in the
+ *  plane. */
 void MPMStages::blend_light_nodes(MPMField &field)
 {
   auto &nodes = field.work.nodes, &volumes = field.work.weights;

@@ -21,24 +21,17 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/** With S from nodes to points, S+ = m^-1 S^T M back, and u the velocity p/m of the nodes, the full
- *  mass matrix gives (S+ S)^-1 u, of which m terms of the Neumann series are
+/* With S from nodes to points, S+ = m^-1 S^T M back, and u = p/m of the nodes, the full mass matrix
+ *  gives (S+ S)^-1 u, of which m terms of the Neumann series are
  *
  *    u_1 = u,   u_(n+1) = u_n + (u - S+ S u_n)
  *
- *  so that S u_m = [I - (I - S S+)^m] v for u = S+ v: of the velocities of the points, only what (I
- *  - S S+)^m leaves is removed, noise that the nodes do not see. m = 1 is PIC.
- *
  *  XPIC(m) (C.C. Hammerquist, J.A. Nairn, Comput. Methods Appl. Mech. Eng. 318 (2017) 724) does
- *  this to the velocity of the start of the step and adds the increment of the lumped solve;
- *  positions move with the lumped velocity. FMPM(m) (J.A. Nairn, C.C. Hammerquist, Comput. Methods
- *  Appl. Mech. Eng. 380 (2021) 113794) does it to the new velocity, which then also moves
- *  positions. There the node actions follow each term: with P the projection of a wall, orthogonal
- *  in the norm of the kinetic energy, P S+ S P has its eigenvalues between 0 and 1 as S+ S has, and
- *  the series converges; a wall that acts after the last term only puts energy into the body.
- *
- *  The transfer that follows is v_p = S v_new + flip (v_p - S v_old). XPIC clears v_p and leaves
- *  v_old - u_m in the place of v_old; FMPM leaves u_m in that of v_new, with flip = 0. */
+ *  this to the velocity of the start of the step and adds the increment of the lumped solve.
+ *  FMPM(m) (J.A. Nairn, C.C. Hammerquist, Comput. Methods Appl. Mech. Eng. 380 (2021) 113794) does
+ *  it to the new velocity, which also moves positions. The transfer that follows is v_p = S v_new +
+ *  flip (v_p - S v_old): XPIC clears v_p and leaves v_old - u_m in the place of v_old; FMPM leaves
+ *  u_m in that of v_new, with flip = 0. */
 
 /** Velocities of the nodes, in the reals from lane on, before terms are added. */
 static void save_velocities(MPMField &field, int lane)

@@ -140,18 +140,9 @@ void MPMContactSearch::find_region_contacts(MPMWallNodes &list, double dt, doubl
 }
 
 // Material that approaches a separating wall in an implicit step, from up to COMES_FROM node
-// spacings away. The nodes at the wall may not even reach it: its surface has to be held, at a
-// place s in front of the wall, and there a line of nodes along the normal makes the motion
-//
-//   sum_i N_i(s) (u_i - dt V) n >= -g
-//
-// with the gap g at the start of the step. The solver holds it at -g when the trial motion has
-// closed the gap (decide()), and lets it go where the wall would pull, as with material that is
-// already at the wall.
-//
-// Mean distances give the position of the surface, as at the wall (mpm_wall_gap.cpp): s is the
-// place of a wall that the material would just touch.
-
+// spacings away, is held at its surface, the place s of a wall that it would just touch. A line of
+// nodes along the normal there makes the motion sum_i N_i(s) (u_i - dt V) n >= -g with the gap g at
+// the start of the step.
 static constexpr int PLACES = 32;          // samples per cell in the search for a surface
 static constexpr int COARSE = 8;           // a coarse search takes every 8th sample first
 static constexpr double MORE = 0.05;       // node spacings beyond COMES_FROM

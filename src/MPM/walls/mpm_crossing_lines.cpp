@@ -501,25 +501,17 @@ void MPMCrossingLines::list_ties(std::vector<int64_t> &ties) const
   for (const auto &group : coupled) add(group.nodes);
 }
 
-// Regions that separate, or have friction, where other faces are near: plates that are thinner than
-// the reach of nodes, and the edges of tools. There a node can be nearer to another face than to
-// the one that the material touches. The masses of the nodes on a line show where the material is:
-// nodes behind the face that it touches get less. When nodes inside acted along the normal of their
-// nearest face, a narrow punch had 10 to 80 % of its force, and a block fell through a plate
-// thinner than a spacing.
+// Where a region is thin, a node can be nearer to another face than to the one that the material
+// touches. The masses of the nodes on a line show where the material is.
 
 static double mass(Grid &grid, int64_t node)
 {
   return node < 0 ? 0.0 : grid.record(node)[3];
 }
 
-/** In front of a plane, a node at the distance x from the surface has the mass that its function
- *  has over x' > -x. If it has more mass than with a surface that is INTO deeper in the wall, then
- *  there is material at another face.
- *
- *  The functions are quadratic ones for all shapes. With linear and cubic ones, too, this holds for
- *  all material in front of a plane, wherever it is between nodes, and for none behind a plate of
- *  .3 to 3 spacings: the shift by INTO is enough for their differences. */
+/** In front of a plane, a node at the distance x from the surface has the mass that its (quadratic)
+ *  function has over x' > -x. If it has more than with a surface that is INTO deeper in the wall,
+ *  then there is material at another face. INTO is enough for functions of other shapes. */
 bool MPMCrossing::is_in_front(Grid &grid) const
 {
   constexpr double INTO = 0.3, LITTLE = 1.0e-3;    // in node spacings; share of the mass

@@ -21,31 +21,17 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* The projection of mirror planes is derived in the README of this room. Its impulse on the body
- *  is
+/* The impulse of the projection of mirror planes (README of this room) on the body is
+ *
  *    -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
- *  with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes k0
- *  + j and to their images k0 - j, which for an unconstrained component is minus the mean velocity
- *  at the wall times a mass. Stick prescribes all components, slip the normal one. At edges, a node
- *  and its images in all faces of the fix that prescribe a component form a group with signs.
  *
- *  Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
- *  times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
- *  back for the gradient follows the decision of the column.
+ *  with the velocities w relative to the wall of the nodes k0 + j and of their images k0 - j.
+ *  Friction scales the tangential part for a column of nodes (Coulomb's law).
  *
- *  FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
- *  normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
- *  momentum and force of the nodes (Sulsky, Chen, Schreyer 1994), so that the increment at a wall
- *  at rest is zero, as it is when the body is continued by its mirror image. With an unchanged
- *  v_old, the prescribed component would be updated as in PIC. But a point that arrives at the wall
- *  must lose its velocity. Hence v_old relative to the wall, whose velocity is that in the last
- *  step, counts as consistent with the wall, in each component, only up to the value at the first
- *  node inside (a field that rises from the wall has less at the wall than there); any excess
- *  remains in v_old, and the points lose it. Separating walls, walls that turn, and friction leave
- *  v_old alone. So do regions, except those that stick or slip at their surface (MPMCrossingLines).
- *
- *  AFLIP leaves v_old alone, too: with affine matrices, a vibration loses nothing, and a constraint
- *  on v_old would create energy, see DECISIONS.md. PIC and APIC have no use for v_old. */
+ *  FLIP. Where material is held for good, v_old is constrained like v_new (Sulsky, Chen, Schreyer
+ *  1994). But a point that arrives at the wall must lose its velocity: v_old relative to the wall
+ *  counts as consistent with it, in each component, only up to the value at the first node
+ *  inside. */
 
 static constexpr double HEAVY = 0.500001;    // share of one node in the mass of mirror images
 

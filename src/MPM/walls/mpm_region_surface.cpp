@@ -6,20 +6,16 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* Region::surface() answers for one side of the surface, and tells places on it. There is more
- *  that LAMMPS does not tell:
+/* Region::surface() of LAMMPS answers for one side of the surface, and not for all regions:
  *
- *  Unions, asked from outside (RegUnion::surface_exterior()): a place on a part is kept when it is
- *  inside of all others, as is right for intersections, and not when it is outside of them, so that
- *  LAMMPS finds none. Hence the parts are asked here. Outside of all parts of a union, the distance
- *  is the least of theirs. Inside of all parts of an intersection, it is the least of theirs, too.
- *  Inside of a union, and outside of an intersection, a part counts whose own side this is, with
- *  those of its places that are not hidden by others.
+ *  From outside of unions it finds nothing, so that their parts are asked here. Outside of all
+ *  parts of a union, and inside of all parts of an intersection, the distance is the least of
+ *  theirs. Inside of a union, and outside of an intersection, a part counts whose own side this is,
+ *  with those of its places that are not hidden by others.
  *
- *  Cones: on the axis the side is not seen, or zero is divided by zero, so that a place next to the
- *  axis is taken. From outside, an end with a radius of zero gives not-a-number (a point is
- *  projected on a line without length), which hides the other places: this end is declared open, as
- *  its only point belongs to the side. */
+ *  On the axis of cones zero is divided by zero: a place next to it is taken. From outside, an end
+ *  with a radius of zero gives not-a-number: it is declared open, as its point belongs to the
+ *  side. */
 
 #include "walls/mpm_region_surface.h"
 

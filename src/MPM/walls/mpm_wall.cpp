@@ -239,12 +239,10 @@ std::function<double(const double *)> MPMWall::distance_from_region(const MPMFie
   };
 }
 
-/* Rotation. The velocity given to a node at x is the chord ((R(dt) - I)(x - o))/dt and not the
- *  tangent omega x (x - o): positions are updated by x += dt v, so that the tangent would carry
- *  every point outward by a factor sqrt(1 + (omega dt)^2) per step, and the chord puts it back on
- *  its circle exactly, since splines reproduce linear fields. USF asks for velocities first, to
- *  find how the material has moved to its present position: then the chord is that of the step that
- *  has ended, (I - R^-1)(x - o)/dt, whose matrix is minus the transpose of the other one. */
+/* The velocity given to a node at x by a rotation is the chord ((R(dt) - I)(x - o))/dt: as
+ *  positions are updated by x += dt v, the tangent would carry points outward. USF asks how the
+ *  material has moved to its present position: by the chord of the step that has ended, (I -
+ *  R^-1)(x - o)/dt. */
 
 void MPMWallMotion::begin(const MPMWallState &state)
 {
@@ -325,11 +323,9 @@ void MPMWallMotion::velocity(const Grid &grid, int64_t node, double *v) const
   velocity(x, v);
 }
 
-/** Half of the change of the velocity of the wall, at the node, since the last step. An impulse R
- *  dt of the wall takes its node from the velocity u to v, with which points then go from x to x'.
- *  It adds R dt (u + v)/2 to the kinetic and stored energy, up to terms that the next step cancels,
- *  as the forces at x do work on half of the way to x and half of the way to x'. R dt v would
- *  differ from it by R (v - u) dt/2 in each step, which adds up where a mass is shaken. */
+/** An impulse R dt of the wall that takes its node from the velocity u to v adds R dt (u + v)/2 to
+ *  the kinetic and stored energy. R dt v would differ from it by R (v - u) dt/2 in each step, which
+ *  adds up where a mass is shaken. */
 void MPMWallMotion::half_change(const Grid &grid, int64_t node, double *v) const
 {
   double x[3];

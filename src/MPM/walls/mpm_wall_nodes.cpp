@@ -67,21 +67,12 @@ std::vector<char> MPMWallNodes::blocks_to_look_at() const
   return looks_at;
 }
 
-/** Nodes inside the region or on its surface, for the state of the region that it has now.
- *
- *  When the surface of a moving region crosses a plane of nodes, the nodes are not taken or let go
- *  at once, but over half a node spacing outside: a node there goes (1 - s^3)^3 of the way to the
- *  velocity of the wall in each step, s = 1 at the end. Material in a grip had no part in the
- *  strain of the rest of the body; if it is let go at once, it is not in equilibrium and makes
- *  waves as high as the force itself. A node that is taken at once gets the missing momentum in one
- *  step. With slow motion the node slips behind the wall before it is let go: by (1 - share)/share
- *  of the change that its acceleration gives in each step, which is little at first because of the
- *  power of s.
- *
- *  Implicit steps have no hand-over (moves_and_holds): to go a part of the way is no projection,
- *  and in equilibrium a node that goes half the way in each step lags as much as one that is not
- *  held. Lines through the surface hold the material in front of it, as for separate. Where there
- *  is also material behind, in a grip, single nodes up to half a spacing outside act, fully. */
+/** Nodes inside the region or on its surface, for the state of the region that it has now. When the
+ *  surface moves across a plane of nodes, these are taken and let go over half a node spacing
+ *  outside: a node goes (1 - s^3)^3 of the way to the velocity of the wall in each step, s = 1 at
+ *  the end. At once, there would be waves as high as the force itself (DECISIONS.md). Implicit
+ *  steps have no hand-over (moves_and_holds), as a part of the way is no projection: lines hold the
+ *  material in front, and in a grip single nodes up to half a spacing outside act, fully. */
 void MPMWallNodes::list_region()
 {
   Grid &grid = field.grid;

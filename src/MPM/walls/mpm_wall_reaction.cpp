@@ -61,13 +61,9 @@ void MPMWallReaction::end_field()
   if (ledger) ledger->transfer += collided * force->mvv2e;
 }
 
-/** Sets the velocity of a node, also the old one unless null, next to a wall with the velocity V,
- *  and books the effect. Work is impulse times the velocity with which points are then moved, less
- *  half of the change of the velocity of the wall, so that a wall at rest works only by friction.
- *  The kinetic energy of the nodes changes by the change of velocity times the mean of old and new
- *  one; the part that is not work is lost, most of it energy that forces had given to nodes that
- *  cannot move. A node that goes only part of the way slips: its work is that of the velocity for
- *  all of it (whole). */
+/** Work is impulse times the velocity with which points are then moved, less half of the change of
+ *  the velocity of the wall. The kinetic energy of the nodes changes by the change of velocity
+ *  times the mean of old and new one; the part that is not work is lost. */
 void MPMWallReaction::set_velocity(int64_t node, const double *V, const double *v,
                                    const double *old, const double *whole)
 {

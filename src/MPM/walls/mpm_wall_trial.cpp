@@ -35,7 +35,6 @@ using namespace MPM_NS;
 // gives the force N of each. Friction acts at the surface: on the nodes of a line in the shares a_k
 // with which they make the velocity there, so that a uniform shear stress is in balance node by
 // node. The slip is s = sum_k a_k (u_k - dt V_k), along the surface.
-
 static constexpr double LONGEST = 0.99;    // longest w, so that a body that slips keeps a stiffness
 // least pull to let go, relative to the largest push; least depth in the wall, in node spacings
 static constexpr double WRONG = 1.0e-9;
@@ -273,15 +272,13 @@ void MPMWallTrial::add_friction(const double *u, double *force)
   });
 }
 
-/** Where a line reverses its slip, friction changes its sign within a distance of eps, which a
- *  derivative taken farther away does not show: Newton's method would oscillate. Therefore w = s/l,
- *  l = (|s|^2 + eps^2)^(1/2), is an unknown of its own, and l w = s is linearized:
+/* Where a line reverses its slip, friction changes its sign within eps. Therefore w = s/l, l =
+ *  (|s|^2 + eps^2)^(1/2), is an unknown of its own, and l w = s is linearized (T.F. Chan, G.H.
+ *  Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964):
  *
  *    l dw + w s.ds/l = s + ds - l w
  *
- *  so that friction changes as -mu N (ds - w s.ds/l)/l. This is stiff as long as w, which is a
- *  little shorter than one, does not have the direction of s, and never quite soft (T.F. Chan, G.H.
- *  Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964, for other sums of lengths). */
+ *  so that friction changes as -mu N (ds - w s.ds/l)/l, which is never quite soft. */
 
 /** Change of direction for a change ds of the slip: (ds - w s.ds/l)/l. */
 void MPMWallTrial::change_of_direction(const MPMContactConstraint &c, const double *slip,
@@ -523,14 +520,9 @@ double MPMWallTrial::memory_usage() const
 }
 
 // Grips: regions that move with stick, in implicit steps, where material goes through their
-// surface. If a grip held whole nodes, the length between two grips would be wrong by part of a
-// node spacing. Instead, the grip cuts the body: points inside move with it and have no part in the
-// balance of forces, and the line of nodes through the surface holds the material there, as a plate
-// in front of a body does. The nodes of the line are not held beyond that, so that the strain in
-// front of the grip continues behind the surface, where the material has no stress.
-//
-// Lines along one axis share no nodes. Where lines along two axes do, at edges and on curved
-// surfaces, nodes are held one by one.
+// surface. A grip cuts the body: points inside move with it and have no part in the balance of
+// forces, and the line of nodes through the surface holds the material there. Where lines share
+// nodes, at edges and on curved surfaces, nodes are held one by one.
 
 /** Finds the share of each point that is outside of the grip (left); a point that the surface cuts
  *  is divided by its width. */

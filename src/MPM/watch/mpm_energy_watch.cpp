@@ -68,14 +68,10 @@ void MPMEnergyWatch::step()
   note_points(parts[1], met, atom->nlocal);
 }
 
-/** Work of forces in this step, at the mean of the velocities of nodes before and after it, to
- *  which these forces have led: that is the way that points went, less half of what the step has
- *  changed. Points' own velocities would do where forces belong to masses, as gravity does. Those
- *  of flip and aflip differ from point to point from what moves them, however, and a load on the
- *  last layers of a body does no work on the difference. With the velocities before the step alone,
- *  a load of N steps would have 1/N too little work. To take all points in some steps costs the
- *  same, but is wrong where a body of a few cells vibrates: its period is a few of these steps.
- *  Forces that elements have added are internal. */
+/** Work of forces in this step, at the mean of the velocities of nodes before and after it: that is
+ *  the way that points went, less half of what the step has changed. Points' own velocities would
+ *  not do: those of flip and aflip differ from what moves points. Forces that elements have added
+ *  are internal. */
 void MPMEnergyWatch::moved()
 {
   const double half = 0.5 * fields[0]->step_dt();
@@ -196,13 +192,10 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
   return all;
 }
 
-/** Velocities that steps have led to belong to the middle of the last step, as their work does, see
- *  moved(). With usl and musl stored energy belongs to its end, where points are, and their sum
- *  would vary with each vibration by omega dt of its energy: by 4 % for a block of 4 by 6 cells.
- *  The mean of stored energies before and after the step belongs to its middle, and with it the sum
- *  is that of a leapfrog, which is constant: with forces f and ways s of steps, half of the sum of
- *  f_k (s_k + s_k+1) is half of that of (f_k-1 + f_k) s_k, but for its ends. With usf stress is a
- *  step behind, with usavg in the middle. */
+/** Velocities, and work, belong to the middle of the last step, see moved(). With usl and musl
+ *  stored energy belongs to its end: the mean of stored energies before and after the step belongs
+ *  to its middle, and with it the sum is that of a leapfrog, which is constant. With usf stress is
+ *  a step behind, with usavg in the middle. */
 bool MPMEnergyWatch::strain_follows() const
 {
   return std::none_of(fields.begin(), fields.end(), [](const MPMField *field) {
