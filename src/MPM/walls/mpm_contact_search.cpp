@@ -61,10 +61,7 @@ void MPMContactSearch::find_contacts(MPMWallNodes &list, double dt, double toler
     for (const auto &line : face.lines) line.mark_blocks(near);
     for (const auto &column : face.columns)
       if (column.node[0] >= 0) near[column.node[0] / NODES_PER_BLOCK] = 1;
-    const double place = face.position(*domain);
-    gap.map(field, near, true, (face.cut ? 2.0 : 1.0) * seen, [&](const double *x) {
-      return face.inward * (x[face.axis] - place);
-    });
+    gap.map(field, near, true, (face.cut ? 2.0 : 1.0) * seen, face.distance(*domain));
     for (auto &line : face.lines) line.touched = sums(line).touches(face.contact, tolerance);
     for (auto &column : face.columns)
       column.touched =
@@ -165,10 +162,7 @@ MPMContactSearch::Distance MPMContactSearch::distance_from(MPMWallNodes &list,
     if (!wall.region_moves()) wall.region->prematch();
     return wall.distance_from_region(list.field, dt, more);
   }
-  const double place = face->position(*domain);
-  return [face, place](const double *x) {
-    return face->inward * (x[face->axis] - place);
-  };
+  return face->distance(*domain);
 }
 
 /** Lines of nodes in front of the wall, each with the node that is nearest to the wall; near: their

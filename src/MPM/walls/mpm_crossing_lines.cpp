@@ -402,15 +402,10 @@ void MPMCrossingLines::act_on_line(MPMWallContact &contact, MPMCrossing &line)
     const double slide = lambda[d] - normal * n[d];
     needed += slide * slide;
   }
-  const double push = line.touched ? constraint.total * normal : 0.0;
-  const double of_water = line.touched ? contact.water_on(constraint.node, constraint.n, n) : 0.0;
-  const double share =
-      contact.tangential_share(line.state, push, of_water, constraint.total * sqrt(needed));
-  if (line.state == MPMContactState::OPEN) {
-    if (of_water > 0.0) contact.push_by_water(field, constraint.node, constraint.n, n);
+  double share;
+  if (!contact.holds(field, line, constraint.node, constraint.n, n, constraint.total * normal,
+                     constraint.total * sqrt(needed), share))
     return;
-  }
-  if (line.state == MPMContactState::SLIDING) reaction.begin_sliding(n);
   for (int k = 0; k < constraint.n; k++) {
     double v[3], old[3], along = 0.0;
     for (int d = 0; d < dim; d++) along += change[d][k] * n[d];

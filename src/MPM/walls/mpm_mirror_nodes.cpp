@@ -8,7 +8,6 @@
 
 #include "walls/mpm_mirror_nodes.h"
 
-#include "domain.h"
 #include "field/mpm_field.h"
 #include "walls/mpm_line_constraint.h"
 #include "walls/mpm_wall.h"
@@ -365,17 +364,11 @@ void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &fa
     if (d != a) needed += to_stick[d] * to_stick[d];
   double inward[3] = {0.0, 0.0, 0.0};
   inward[a] = face.inward;
-  const double push = column.touched ? face.inward * to_stick[a] : 0.0;
-  const double of_water =
-      column.touched ? contact.water_on(column.node, MPMMirrorColumn::LENGTH, inward) : 0.0;
-  const double slide = contact.tangential_share(column.state, push, of_water, sqrt(needed));
-  if (column.state == MPMContactState::OPEN) {
-    if (of_water > 0.0) contact.push_by_water(field, column.node, MPMMirrorColumn::LENGTH, inward);
+  double slide;
+  if (!contact.holds(field, column, column.node, MPMMirrorColumn::LENGTH, inward,
+                     face.inward * to_stick[a], sqrt(needed), slide))
     return;
-  }
   for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
-  const double normal[3] = {(double) (a == 0), (double) (a == 1), (double) (a == 2)};
-  if (column.state == MPMContactState::SLIDING) reaction.begin_sliding(normal);
   if (r[3] > 0.0) project(reaction, &plane, 1, true, prescribed);
   for (int k = 0; k < npairs; k++) project(reaction, pairs[k].images, 2, false, prescribed);
   reaction.end_sliding();
@@ -416,13 +409,12 @@ void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face
   const auto &V = constraint.V;
   const double total = constraint.total;
 
-  // old velocities are consistent with the wall up to the value at the innermost node, see above
-
   // components that stick prescribes in this pass
   const auto prescribed = [&](int d) {
     return wall.velocity[d].given && (d == a) == last;
   };
-  const double normal[3] = {(double) (a == 0), (double) (a == 1), (double) (a == 2)};
+  double inward[3] = {0.0, 0.0, 0.0};
+  inward[a] = face.inward;
   double lambda[3] = {0.0, 0.0, 0.0}, lambda_old[3] = {0.0, 0.0, 0.0};
   double change[3][4], change_old[3][4] = {};
   double relative[4];    // velocities of the nodes relative to the wall
@@ -441,22 +433,13 @@ void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face
   } else if (last) {
     share[a] = 1.0;
   } else {
-    const double push = line.touched
-        ? face.inward * total * (lambda[a] - reaction.old_share() * lambda_old[a])
-        : 0.0;
-    double needed = 0.0;
+    const double push = face.inward * total * (lambda[a] - reaction.old_share() * lambda_old[a]);
+    double needed = 0.0, slide;
     for (int d = 0; d < dim; d++)
       if (d != a) needed += lambda[d] * lambda[d];
-    double inward[3] = {0.0, 0.0, 0.0};
-    inward[a] = face.inward;
-    const double of_water = line.touched ? contact.water_on(constraint.node, m, inward) : 0.0;
-    const double slide = contact.tangential_share(line.state, push, of_water, total * sqrt(needed));
-    if (line.state == MPMContactState::OPEN) {
-      if (of_water > 0.0) contact.push_by_water(field, constraint.node, m, inward);
+    if (!contact.holds(field, line, constraint.node, m, inward, push, total * sqrt(needed), slide))
       return;
-    }
     for (int d = 0; d < dim; d++) share[d] = d == a ? 1.0 : slide;
-    if (line.state == MPMContactState::SLIDING) reaction.begin_sliding(normal);
   }
 
   for (int k = 0; k < m; k++) {
@@ -578,11 +561,6 @@ MPMBoxFace::MPMBoxFace(const MPMField &field, const Domain &box, int face) :
   cut = std::fabs(x - plane_x) > MPMWall::ON_SURFACE * h;
   if (cut) nweight = MPMLineConstraint::weights_at(field, axis, inward, x, first, weight);
   contact = contact_of(field, x);
-}
-
-double MPMBoxFace::position(const Domain &box) const
-{
-  return inward > 0 ? box.boxlo[axis] : box.boxhi[axis];
 }
 
 static constexpr double FILLED = 0.4;    // share of the volume in reach of the node in front

@@ -192,10 +192,6 @@ void MPMWall::restore_region()
   for (int k = 0; k < 4; k++) *MPMRegionMotion::of(region)[k] = state.region[k];
 }
 
-static constexpr double FAR = 1.0e8;    // node spacings
-static constexpr double WIDER = 2.0;    // node spacings, around a region that moves
-
-/** Is the place of the region known, so that blocks far from it can be left out? */
 bool MPMWall::knows_place() const
 {
   return region->nregion == 1 && (placed || !region_moves());

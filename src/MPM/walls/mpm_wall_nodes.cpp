@@ -219,15 +219,10 @@ void MPMWallNodes::act_on_node(MPMWallContact &contact, MPMWallNode &node)
       slide[d] = r[d] - V[d] - normal * n[d];
       length += slide[d] * slide[d];
     }
-    const double push = node.touched ? -normal : 0.0;
-    const double of_water = node.touched ? contact.water_on(&node.node, 1, n) / r[3] : 0.0;
-    const double keep = 1.0 - contact.tangential_share(node.state, push, of_water, sqrt(length));
-    if (node.state == MPMContactState::OPEN) {
-      if (of_water > 0.0) contact.push_by_water(field, &node.node, 1, n);
-      return;
-    }
+    double share;
+    if (!contact.holds(field, node, &node.node, 1, n, -normal, sqrt(length), share, r[3])) return;
+    const double keep = 1.0 - share;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
-    if (node.state == MPMContactState::SLIDING) reaction.begin_sliding(n);
   }
   const double whole[3] = {v[0], v[1], v[2]};
   for (int d = 0; d < dim && node.share < 1.0; d++) v[d] = r[d] + node.share * (v[d] - r[d]);

@@ -64,11 +64,6 @@ bool MPMWallTrial::has_friction() const
   return wall.friction > 0.0;
 }
 
-double MPMWallTrial::width() const
-{
-  return std::max(eps, soft);
-}
-
 MPMWallNodes &MPMWallTrial::nodes()
 {
   return *std::find_if(fields.begin(), fields.end(), [this](const MPMWallNodes &list) {
@@ -208,21 +203,6 @@ bool MPMWallTrial::is_deep(const MPMWallNodes &list, std::size_t node) const
   return !wall.region || -list.nodes[node].distance > MPMWall::DEEPEST * list.field.lattice.h;
 }
 
-void MPMWallTrial::clear_impulses()
-{
-  for (auto &c : constraints) c.impulse = 0.0;
-}
-
-void MPMWallTrial::take_base()
-{
-  for (auto &c : constraints) c.base = c.impulse;
-}
-
-void MPMWallTrial::take_forces(double scale)
-{
-  for (auto &c : constraints) c.force = (c.impulse - c.base) / scale;
-}
-
 bool MPMWallTrial::close_gaps(bool yes)
 {
   closes = yes;
@@ -247,24 +227,29 @@ void MPMWallTrial::find_slip(const MPMContactConstraint &c, const double *u, dou
   for (int d = 0; d < 3; d++) slip[d] -= away * c.normal[d];
 }
 
-/** Calls use(constraint) for all contacts that are held. */
-template <class Use> void MPMWallTrial::visit_active(const Use &use)
+/** Calls use(constraint) for all contacts that are held and have friction. */
+template <class Use> void MPMWallTrial::visit_rubbing(const Use &use)
 {
   for (auto &c : constraints)
-    if (c.active && c.n > 0) use(c);
+    if (wall.friction != 0.0 && c.active && c.n > 0) use(c);
+}
+
+/** (|s|^2 + eps^2)^(1/2), see MPMTrialContact. */
+double MPMWallTrial::length(const MPMContactConstraint &c) const
+{
+  const double width = std::max(eps, soft);
+  return std::sqrt(MathExtra::lensq3(c.slip) + width * width);
 }
 
 void MPMWallTrial::add_friction(const double *u, double *force)
 {
   const int dim = field->lattice.dim;
-  if (wall.friction == 0.0) return;
-  const double width = this->width();
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     double away;
     find_slip(c, u, slip_time, c.slip, away);
     MathExtra::zero3(c.friction);
     if (!(c.force > 0.0)) return;
-    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width);
+    const double length = this->length(c);
     for (int d = 0; d < dim; d++) {
       c.friction[d] = -wall.friction * c.force * c.slip[d] / length;
       for (int j = 0; j < c.n; j++) force[dim * c.node[j] + d] += c.weight[j] * c.friction[d];
@@ -284,23 +269,19 @@ void MPMWallTrial::add_friction(const double *u, double *force)
 void MPMWallTrial::change_of_direction(const MPMContactConstraint &c, const double *slip,
                                        double *change) const
 {
-  const double width = this->width(), length = std::sqrt(MathExtra::lensq3(c.slip) + width * width),
-               along = MathExtra::dot3(c.slip, slip) / length;
+  const double length = this->length(c), along = MathExtra::dot3(c.slip, slip) / length;
   for (int d = 0; d < 3; d++) change[d] = (slip[d] - along * c.direction[d]) / length;
 }
 
 void MPMWallTrial::add_friction_change(const double *du, double scale, double *dforce)
 {
   const int dim = field->lattice.dim;
-  if (wall.friction == 0.0) return;
-  const double width = this->width();
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     if (!(c.force > 0.0)) return;
     double slip[3], turn[3], away;
     find_slip(c, du, 0.0, slip, away);
     change_of_direction(c, slip, turn);
-    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width),
-                 more = (c.impulse - c.base) / scale;
+    const double length = this->length(c), more = (c.impulse - c.base) / scale;
     for (int d = 0; d < dim; d++) {
       const double change = -wall.friction * (more * c.slip[d] / length + c.force * turn[d]);
       for (int j = 0; j < c.n; j++) dforce[dim * c.node[j] + d] += c.weight[j] * change;
@@ -310,14 +291,12 @@ void MPMWallTrial::add_friction_change(const double *du, double scale, double *d
 
 void MPMWallTrial::correct(const double *du)
 {
-  if (wall.friction == 0.0) return;
-  const double width = this->width();
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     double slip[3], turn[3], away;
     find_slip(c, du, 0.0, slip, away);
     change_of_direction(c, slip, turn);
     double *const w = c.direction;
-    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width);
+    const double length = this->length(c);
     for (int d = 0; d < 3; d++) w[d] = c.slip[d] / length + turn[d];
     const double size = MathExtra::len3(w);
     if (size > LONGEST) MathExtra::scale3(LONGEST / size, w);
@@ -327,8 +306,7 @@ void MPMWallTrial::correct(const double *du)
 void MPMWallTrial::add_friction_blocks(double *blocks)
 {
   const int dim = field->lattice.dim;
-  if (wall.friction == 0.0) return;
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     if (!(c.force > 0.0)) return;
     double along[3] = {0.0, 0.0, 0.0}, turn[3];
     const double slope = wall.friction * c.force;
@@ -345,13 +323,12 @@ void MPMWallTrial::add_friction_blocks(double *blocks)
 
 void MPMWallTrial::add_friction_stiffness(double *stiffness)
 {
-  if (wall.friction == 0.0) return;
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     if (!(c.force > 0.0)) return;
     double turn[3];
     change_of_direction(c, c.slip, turn);
-    const double size = MathExtra::lensq3(c.slip), length = std::sqrt(size + width() * width()),
-                 along = size > 0.0 ? MathExtra::dot3(turn, c.slip) / size : 1.0 / length;
+    const double size = MathExtra::lensq3(c.slip),
+                 along = size > 0.0 ? MathExtra::dot3(turn, c.slip) / size : 1.0 / length(c);
     for (int j = 0; j < c.n; j++)
       stiffness[c.node[j]] += c.weight[j] * wall.friction * c.force * along;
   });
@@ -398,8 +375,7 @@ bool MPMWallTrial::decide(const double *u, double unbalanced)
 void MPMWallTrial::apply_friction(MPMWallReaction &reaction)
 {
   const int dim = field->lattice.dim;
-  if (wall.friction == 0.0) return;
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     for (int j = 0; j < c.n; j++) {
       const int64_t node = c.node[j];
       const double *const record = field->grid.record(node);
@@ -457,21 +433,15 @@ void MPMWallTrial::act_on_approach(MPMWallReaction &reaction, MPMWallNodes &list
 /** Distances of points from the wall at the start of the step. */
 void MPMWallTrial::find_clearance(MPMWallNodes &list)
 {
-  const auto &faces = list.mirrors.faces;
-  const int nfaces = wall.region ? 1 : (int) faces.size();
-  clearance.resize((std::size_t) nfaces * atom->nmax);
+  std::vector<std::function<double(const double *)>> away;
   if (wall.region && !wall.region_moves()) wall.region->prematch();
-  const auto away = wall.region ? wall.distance_from_region(*field, dt) : nullptr;
+  if (wall.region) away.push_back(wall.distance_from_region(*field, dt));
+  for (const auto &face : list.mirrors.faces) away.push_back(face.distance(*domain));
+  clearance.resize(away.size() * atom->nmax);
   for (const auto &run : field->map->runs)
     for (bigint i = run.first; i < run.last; i++)
-      for (int f = 0; f < nfaces; f++) {
-        const double *const x = atom->x[i];
-        double &distance = clearance[nfaces * i + f];
-        if (wall.region)
-          distance = away(x);
-        else
-          distance = faces[f].inward * (x[faces[f].axis] - faces[f].position(*domain));
-      }
+      for (std::size_t f = 0; f < away.size(); f++)
+        clearance[away.size() * i + f] = away[f](atom->x[i]);
 }
 
 /** Checks that no material that was in front of the wall, and was not found to touch it, is in the

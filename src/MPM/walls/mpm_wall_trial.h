@@ -54,9 +54,18 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   bool find_carried(MPMField &, std::vector<double> &) override;
   void constrain_carried(MPMField &, double *force) override;
   bool has_friction() const override;
-  void clear_impulses() override;
-  void take_base() override;
-  void take_forces(double scale) override;
+  void clear_impulses() override
+  {
+    for (auto &c : constraints) c.impulse = 0.0;
+  }
+  void take_base() override
+  {
+    for (auto &c : constraints) c.base = c.impulse;
+  }
+  void take_forces(double scale) override
+  {
+    for (auto &c : constraints) c.force = (c.impulse - c.base) / scale;
+  }
   void add_friction(const double *u, double *force) override;
   void add_friction_change(const double *du, double scale, double *dforce) override;
   void add_friction_blocks(double *blocks) override;
@@ -92,8 +101,8 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
                        MPMContactConstraint &);
   bool is_deep(const MPMWallNodes &, std::size_t node) const;
   void find_clearance(MPMWallNodes &);
-  double width() const;
-  template <class Use> void visit_active(const Use &use);
+  double length(const MPMContactConstraint &) const;
+  template <class Use> void visit_rubbing(const Use &use);
   void change_of_direction(const MPMContactConstraint &, const double *slip, double *change) const;
   void find_slip(const MPMContactConstraint &, const double *u, double time, double *slip,
                  double &away) const;
