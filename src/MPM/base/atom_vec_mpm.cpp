@@ -109,9 +109,9 @@ void AtomVecMPM::init()
   if (!left.empty() && comm->me == 0)
     error->warning(
         FLERR,
-        "The run that wrote the restart file had {}, and what is in the file of it is lost now: "
-        "if it shall go on, define it with the same ID and style directly after read_restart, "
-        "before commands that need the whole system, such as delete_atoms, balance, and run",
+        "The run that wrote the restart file had {}, and what is in the file of it is lost now: if "
+        "it shall go on, define it with the same ID and style directly after read_restart, before "
+        "commands that need the whole system, such as delete_atoms, balance, and run",
         left);
 }
 
@@ -142,8 +142,8 @@ void AtomVecMPM::grow_pointers()
       after_sphere = true;
     } else if (clash) {
       error->all(FLERR,
-                 "Atom style mpm cannot be combined with atom style {}, which uses the "
-                 "mass or volume of atoms in another way",
+                 "Atom style mpm cannot be combined with atom style {}, which uses the mass or "
+                 "volume of atoms in another way",
                  style);
     }
   }
@@ -199,8 +199,8 @@ void AtomVecMPM::data_atom_post(int ilocal)
   const double volume = vfrac[ilocal];
   if (!(volume >= 0.0))
     error->one(FLERR,
-               "Invalid volume {} of atom {} in Atoms section of data file: it must be > 0 "
-               "for a material point and 0 for other atoms",
+               "Invalid volume {} of atom {} in Atoms section of data file: it must be > 0 for a "
+               "material point and 0 for other atoms",
                volume, atom->tag[ilocal]);
 
   if (volume > 0.0) {
@@ -208,14 +208,14 @@ void AtomVecMPM::data_atom_post(int ilocal)
     if (after_sphere) density /= sphere_volume(radius[ilocal]);
     if (!(density >= 0.0))
       error->one(FLERR,
-                 "Invalid density {} of atom {} in Atoms section of data file: it must be "
-                 "> 0, or 0 for a material point whose mass will come from fix mpm/material",
+                 "Invalid density {} of atom {} in Atoms section of data file: it must be > 0, or "
+                 "0 for a material point whose mass will come from fix mpm/material",
                  density, atom->tag[ilocal]);
     rmass[ilocal] = density * volume;
   } else if (!after_sphere && !(rmass[ilocal] > 0.0)) {
     error->one(FLERR,
-               "Invalid mass {} of atom {} in Atoms section of data file: an atom without "
-               "volume is no material point, and its density column is its mass, which must be > 0",
+               "Invalid mass {} of atom {} in Atoms section of data file: an atom without volume "
+               "is no material point, and its density column is its mass, which must be > 0",
                rmass[ilocal], atom->tag[ilocal]);
   }
 
@@ -231,17 +231,11 @@ void AtomVecMPM::pack_data_pre(int ilocal)
 
   if (after_sphere && rmass_one == 0.0)
     error->one(FLERR,
-               "Material point {} has no mass yet, and atom style sphere cannot read such "
-               "atoms from a data file: define fix mpm/material before write_data",
+               "Material point {} has no mass yet, and atom style sphere cannot read such atoms "
+               "from a data file: define fix mpm/material before write_data",
                atom->tag[ilocal]);
   const double sphere = after_sphere ? sphere_volume(0.5 * radius[ilocal]) : 1.0;
   rmass[ilocal] = rmass_one * sphere / vfrac[ilocal];
-}
-
-/** Undo pack_data_pre(); a sphere style has restored rmass already. */
-void AtomVecMPM::pack_data_post(int ilocal)
-{
-  if (!after_sphere) rmass[ilocal] = rmass_one;
 }
 
 /** Index of a property for compute property/atom, -1: unknown. */

@@ -77,18 +77,16 @@ static std::string read_words(LAMMPS *lmp, const std::string &name, std::string 
 {
   const std::string path = find_file(name);
   if (path.empty())
-    return fmt::format(
-        "cannot read file {}: it is not here, nor in a folder of the environment variable "
-        "LAMMPS_POTENTIALS, nor among the files of this package",
-        name);
+    return fmt::format("cannot read file {}: it is not here, nor in a folder of the environment "
+                       "variable LAMMPS_POTENTIALS, nor among the files of this package",
+                       name);
   const std::string units = utils::get_potential_units(path, "material");
   const std::string ours = lmp->update->unit_style;
   if (units.empty())
     return fmt::format("the first line of file {} must give its units, such as 'UNITS: si'", name);
   if (units != ours)
     return fmt::format(
-        "file {} is in {} units but the input uses {} units: convert the file or use "
-        "units {}",
+        "file {} is in {} units but the input uses {} units: convert the file or use units {}",
         name, units, ours, units);
   utils::logmesg(lmp, "Reading material file {} with DATE: {}\n", name,
                  utils::get_potential_date(path, "material"));
@@ -149,10 +147,10 @@ std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::strin
 
   for (int iarg = first; iarg < narg; iarg++)
     if (strcmp(arg[iarg], "file") == 0)
-      lmp->error->all(FLERR, iarg,
-                      "{}: the 'file' of a material must come first; what follows its name can add "
-                      "to it",
-                      caller);
+      lmp->error->all(
+          FLERR, iarg,
+          "{}: the 'file' of a material must come first; what follows its name can add to it",
+          caller);
   try {
     return Material::create(std::vector<std::string>(arg + first, arg + narg));
   } catch (const MaterialError &e) {

@@ -149,11 +149,10 @@ void FixMPMState::unpack_restart(int i, int nth)
   const double *values = from_restart(i, nth, n);
   if (n != state.size()) {
     const auto layout = state.layout();
-    error->one(
-        FLERR, Error::NOLASTLINE,
-        "The restart file has {} numbers per point for fix {} (style {}), not {}{}: give the "
-        "fix the options with which the file was written",
-        n, id, style, state.size(), layout.empty() ? "" : " (" + layout + ")");
+    error->one(FLERR, Error::NOLASTLINE,
+               "The restart file has {} numbers per point for fix {} (style {}), not {}{}: give "
+               "the fix the options with which the file was written",
+               n, id, style, state.size(), layout.empty() ? "" : " (" + layout + ")");
   }
   state.unpack(i, values);
 }

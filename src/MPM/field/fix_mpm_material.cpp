@@ -104,11 +104,10 @@ void FixMPMMaterial::check_surfaces() const
     n += (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 && !(atom->mask[i] & nodes);
   MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/material {}: its law bears nothing across a surface, and {} of its points are "
-        "no nodes of one: use fix mpm/elements with thickness and axes for them",
-        id, all);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/material {}: its law bears nothing across a surface, and {} of its points "
+               "are no nodes of one: use fix mpm/elements with thickness and axes for them",
+               id, all);
 }
 
 /** Ranges of validity: each rank notes the first step in which one of its points is outside; ranks

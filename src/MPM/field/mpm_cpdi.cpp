@@ -226,10 +226,9 @@ void MPMCpdi::limit(int i)
   field.guard->point_is_bad(
       i, fmt::format("has a domain with a corner {:.4g} node spacings away", far),
       "it is made smaller",
-      fmt::format(
-          ", the limit is {}: use smaller points or a larger node spacing; with fix mpm ... bad "
-          "warn the domain is made smaller, with bad delete the point is removed",
-          room));
+      fmt::format(", the limit is {}: use smaller points or a larger node spacing; with fix mpm "
+                  "... bad warn the domain is made smaller, with bad delete the point is removed",
+                  room));
   if (!std::isfinite(far)) far = make_undeformed(i);
   const double scale = std::min(1.0, limit / far);
   for (int k = 0; k < size(); k++) domain[k] *= scale;
@@ -325,8 +324,7 @@ void MPMCpdi::tell_of_boxes(bigint nboxes, bigint ndeformed)
   if (all[1])
     error->warning(
         FLERR,
-        "Fix mpm {} shape cpdi2: {} of these points have been deformed before: domains "
-        "that they had, with a fix mpm that is gone, are lost, and become boxes with the "
-        "deformation F",
+        "Fix mpm {} shape cpdi2: {} of these points have been deformed before: domains that they "
+        "had, with a fix mpm that is gone, are lost, and become boxes with the deformation F",
         field.id(), all[1]);
 }

@@ -91,10 +91,10 @@ void MPMField::check_box()
   for (int d = 0; d < lattice.dim; d++) {
     const char axis = 'x' + d;
     if (domain->boundary[d][0] > 1 || domain->boundary[d][1] > 1)
-      error->all(FLERR,
-                 "Fix mpm requires periodic or fixed boundaries (p or f), "
-                 "but axis {} is shrink-wrapped",
-                 axis);
+      error->all(
+          FLERR,
+          "Fix mpm requires periodic or fixed boundaries (p or f), but axis {} is shrink-wrapped",
+          axis);
     const double length = domain->prd[d];
     if (lattice.h > length * (1.0 + 1.0e-10))
       error->all(FLERR, "Fix mpm node spacing {} is larger than the box length {} along {}",
@@ -103,22 +103,22 @@ void MPMField::check_box()
         MAX(fabs(domain->boxlo[d] - lattice.origin[d]), fabs(domain->boxhi[d] - lattice.origin[d]));
     if (!(far < MAX_NODE * lattice.h))
       error->all(FLERR,
-                 "Fix mpm node spacing {} is too small for the box length {} along {}, or "
-                 "its origin {} is too far away: there can be {:.0f} nodes between them",
+                 "Fix mpm node spacing {} is too small for the box length {} along {}, or its "
+                 "origin {} is too far away: there can be {:.0f} nodes between them",
                  lattice.h, length, axis, lattice.origin[d], MAX_NODE);
     lattice.periodic[d] = domain->periodicity[d] != 0;
     lattice.ncell[d] = MAX(1, (int) std::lround(length / lattice.h));
     if (lattice.periodic[d] && fabs(lattice.ncell[d] * lattice.h - length) > 1.0e-10 * length)
       error->all(FLERR,
-                 "Length {} of the box along periodic axis {} must be a multiple of the "
-                 "node spacing {}: the nearest valid spacing is {:.16g}",
+                 "Length {} of the box along periodic axis {} must be a multiple of the node "
+                 "spacing {}: the nearest valid spacing is {:.16g}",
                  length, axis, lattice.h, length / lattice.ncell[d]);
     if (options.shape == BERNSTEIN && lattice.periodic[d] && lattice.ncell[d] % 2)
-      error->all(FLERR,
-                 "Fix mpm shape bernstein has cells of two node spacings, but there are {} "
-                 "spacings along periodic axis {}: use an even number, for instance a spacing of "
-                 "{:.16g}",
-                 lattice.ncell[d], axis, length / (lattice.ncell[d] + 1));
+      error->all(
+          FLERR,
+          "Fix mpm shape bernstein has cells of two node spacings, but there are {} spacings along "
+          "periodic axis {}: use an even number, for instance a spacing of {:.16g}",
+          lattice.ncell[d], axis, length / (lattice.ncell[d] + 1));
   }
   if (options.axisymmetric && (domain->boxlo[0] < 0.0 || domain->periodicity[0]))
     error->all(FLERR,

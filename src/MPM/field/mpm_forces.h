@@ -11,7 +11,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 // What physics adds to the forces and to the strain of points. A fix derives from those of these
@@ -23,6 +22,7 @@ struct PointRows;
 
 namespace LAMMPS_NS {
 class MPMField;
+class MPMNodePressure;
 class MPMTrialForces;
 
 /** Stress in addition to that of points, as a load on them: its work counts as external. */

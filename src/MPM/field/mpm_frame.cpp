@@ -85,11 +85,6 @@ void MPMFrame::lattice_F(int i, double F[3][3]) const
   memcpy(F, field.points->F[i], 9 * sizeof(double));
 }
 
-double MPMFrame::lattice_jacobian(int i) const
-{
-  return field.points->jacobian(i);
-}
-
 double MPMFrame::speed(int i, double &c, double /*known*/) const
 {
   return c + sqrt(dot(atom->v[i], atom->v[i]));

@@ -10,7 +10,7 @@
 #define LMP_MPM_FRAME_H
 
 #include "atom.h"
-#include "base/mpm_rows.h"
+#include "base/mpm_points.h"
 #include "field/mpm_field.h"
 #include "math/matrix.h"
 
@@ -117,7 +117,7 @@ class MPMFrame : protected Pointers {
   /** Deformation gradient with respect to the places of the lattice. */
   virtual void lattice_F(int i, double F[3][3]) const;
   /** Ratio of the volume at the places of the lattice to the initial volume. */
-  virtual double lattice_jacobian(int i) const;
+  virtual double lattice_jacobian(int i) const { return field.points->jacobian(i); }
 
   /** Speed that a point with the wave speed c has with respect to the stability limit (it must not
    *  cross a cell in a step). c may be raised. If the speed does not exceed a known one, the result
@@ -177,7 +177,7 @@ class MPMFrameTotal : public MPMFrame {
   void refer_gradients(int first, int n, double *L) const override;
   double volume_change(int i, const double *L, double dt) const override;
   void lattice_F(int i, double F[3][3]) const override;
-  double lattice_jacobian(int i) const override;
+  double lattice_jacobian(int i) const override { return R ? MPMPoints::det(R[i]) : 1.0; }
   double speed(int i, double &c, double known) const override;
   double radius(int i, double x) const override;
   void start_counting() override { nupdate = 0; }

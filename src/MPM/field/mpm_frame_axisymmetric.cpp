@@ -21,7 +21,6 @@
 #include "field/mpm_node_action.h"
 #include "field/mpm_point_map.h"
 #include "force.h"
-#include "modify.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,11 +45,10 @@ template <class Plane> class MPMFrameAxisymmetric : public Plane {
     if (domain->boxlo[0] > AT_AXIS * field.lattice.h) return;
     for (const auto *action : find_fixes<MPMNodeAction>(this->lmp))
       if (action->holds_axis(field)) return;
-    this->error->all(
-        FLERR,
-        "Fix mpm {} axisymmetric: the face of the box at x = 0 is the axis of symmetry, "
-        "where nothing moves along x: use fix mpm/boundary xlo slip",
-        field.id());
+    this->error->all(FLERR,
+                     "Fix mpm {} axisymmetric: the face of the box at x = 0 is the axis of "
+                     "symmetry, where nothing moves along x: use fix mpm/boundary xlo slip",
+                     field.id());
   }
 
   /** External forces of the points, and what hoop stress adds, in units of force. */

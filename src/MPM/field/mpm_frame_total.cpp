@@ -63,12 +63,11 @@ void MPMFrameTotal::setup()
   }
   MPI_Allreduce(&deformed, &deformed_all, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (deformed_all)
-    error->all(
-        FLERR,
-        "Fix mpm {} frame total: points have no reference position but are deformed already, "
-        "for instance point {}: use frame total from the first run on, and the same fix ID "
-        "after read_restart, or reference update",
-        field.id(), deformed_all);
+    error->all(FLERR,
+               "Fix mpm {} frame total: points have no reference position but are deformed "
+               "already, for instance point {}: use frame total from the first run on, and the "
+               "same fix ID after read_restart, or reference update",
+               field.id(), deformed_all);
 }
 
 /** The first Piola-Kirchhoff stress is made here, a batch at a time: to read F and tau costs less
@@ -88,11 +87,6 @@ void MPMFrameTotal::lattice_F(int i, double F[3][3]) const
   double inverse[3][3];
   MathExtra::invert3((Rows) R[i], inverse);
   MathExtra::times3((Rows) field.points->F[i], inverse, F);
-}
-
-double MPMFrameTotal::lattice_jacobian(int i) const
-{
-  return R ? MPMPoints::det(R[i]) : 1.0;
 }
 
 /** As the deformation gradient has it. */

@@ -67,11 +67,10 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
 {
   const auto sinks = find_fixes<MPMHeatSink>(lmp);
   if (sinks.empty())
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix {} {} heat: nothing conducts the heat of friction: define a fix mpm/heat, or drop "
-        "the keyword",
-        user.style, user.id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {} heat: nothing conducts the heat of friction: define a fix mpm/heat, or "
+               "drop the keyword",
+               user.style, user.id);
   sink = sinks[0];
   bodies.clear();
   bool any = false, points = false;
@@ -91,11 +90,10 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
       if (!material.conducts()) continue;
       const Conduction c = material.conduction(nullptr);
       if (c.orthotropic && domain->dimension == 2 && leaves_plane(c))
-        error->all(
-            FLERR, Error::NOLASTLINE,
-            "Fix {} {} heat: in 2d, an axis of the conductivity of fix mpm/material {} must be "
-            "normal to the plane: choose other axes",
-            user.style, user.id, field->materials[k]->id);
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix {} {} heat: in 2d, an axis of the conductivity of fix mpm/material {} must "
+                   "be normal to the plane: choose other axes",
+                   user.style, user.id, field->materials[k]->id);
       nconducting++;
       body.orthotropic = body.orthotropic || c.orthotropic;
       body.mixed = body.mixed || material.conduction_varies();
@@ -107,11 +105,10 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
     bodies.push_back(body);
   }
   if (points && !any)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix {} {} heat: no material of its bodies conducts heat: give a fix mpm/material the "
-        "part 'thermal conducting', or drop the keyword",
-        user.style, user.id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {} heat: no material of its bodies conducts heat: give a fix mpm/material "
+               "the part 'thermal conducting', or drop the keyword",
+               user.style, user.id);
 }
 
 void MPMFrictionHeat::begin_step()

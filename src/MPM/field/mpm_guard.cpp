@@ -17,8 +17,6 @@
 #include "field/mpm_point_map.h"
 #include "field/mpm_traffic.h"
 #include "fix.h"
-#include "group.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "output.h"
 #include "thermo.h"
@@ -33,9 +31,9 @@ using namespace MPM_NS;
 std::string MPMGuard::describe(int i) const
 {
   const double *x = atom->x[i], *v = atom->v[i];
-  return fmt::format("Material point {} at {:.6g} {:.6g} {:.6g} with velocity {:.6g} {:.6g} {:.6g} "
-                     "and J = {:.6g}",
-                     atom->tag[i], x[0], x[1], x[2], v[0], v[1], v[2], field.points->jacobian(i));
+  return fmt::format(
+      "Material point {} at {:.6g} {:.6g} {:.6g} with velocity {:.6g} {:.6g} {:.6g} and J = {:.6g}",
+      atom->tag[i], x[0], x[1], x[2], v[0], v[1], v[2], field.points->jacobian(i));
 }
 
 void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &cure,
@@ -114,8 +112,8 @@ void MPMGuard::check_inside_box()
                  describe(i), update->ntimestep);
     else
       error->one(FLERR,
-                 "{} has left the box through a fixed face; enlarge the box, put a "
-                 "fix mpm/boundary there, or let it go with fix mpm ... bad delete",
+                 "{} has left the box through a fixed face; enlarge the box, put a fix "
+                 "mpm/boundary there, or let it go with fix mpm ... bad delete",
                  describe(i));
   }
   if (deletes) delete_points(bad_points, true);
@@ -178,8 +176,8 @@ void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
   for (int d = 0; d < 3; d++) deleted.momentum[d] += gone.momentum[d];
   if (warn && comm->me == 0)
     error->warning(FLERR,
-                   "Fix mpm {} deleted {:.0f} points of mass {:.6g} and momentum {:.6g} "
-                   "{:.6g} {:.6g} at step {}",
+                   "Fix mpm {} deleted {:.0f} points of mass {:.6g} and momentum {:.6g} {:.6g} "
+                   "{:.6g} at step {}",
                    field.id(), gone.points, gone.mass, gone.momentum[0], gone.momentum[1],
                    gone.momentum[2], update->ntimestep);
 }

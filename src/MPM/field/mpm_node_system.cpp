@@ -83,10 +83,9 @@ const std::vector<char> &MPMLatticeRanks::gather_bytes(const void *mine, std::si
   MPI_Allgather(&mine_bytes, 1, MPI_LMP_BIGINT, bytes_of_ranks.data(), 1, MPI_LMP_BIGINT,
                 lmp->world);
   if (std::accumulate(bytes_of_ranks.begin(), bytes_of_ranks.end(), bigint(0)) > INT_MAX)
-    lmp->error->all(
-        FLERR,
-        "Solve on the lattice is too large for its coarse levels, which all ranks have: use a "
-        "larger node spacing");
+    lmp->error->all(FLERR,
+                    "Solve on the lattice is too large for its coarse levels, which all ranks "
+                    "have: use a larger node spacing");
   counts.assign(bytes_of_ranks.begin(), bytes_of_ranks.end());
   return gather_counts(mine);
 }

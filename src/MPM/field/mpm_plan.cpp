@@ -261,8 +261,8 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::s
   text += fmt::format("  {:.0f} bytes per point", bytes_per_point);
   if (field.options.plan)
     text += fmt::format(
-        "; {:.0f} blocks with points of {:.0f} active, {:.1f} points per block\n"
-        "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step in {:.0f} messages",
+        "; {:.0f} blocks with points of {:.0f} active, {:.1f} points per block\n  {} updates of "
+        "the topology, {} sorts, {:.0f} halo bytes per step in {:.0f} messages",
         sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild, field.map->nsort,
         sum[3], sum[4]);
   const auto least = fmt::format("{:.6g}", counts.dt_min),
@@ -277,11 +277,10 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::s
                    100.0 * least_use);
   const auto &deleted = field.guard->deleted;
   if (deleted.points > 0.0)
-    utils::logmesg(lmp,
-                   "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} "
-                   "{:.10g}\n",
-                   deleted.points, deleted.mass, deleted.momentum[0], deleted.momentum[1],
-                   deleted.momentum[2]);
+    utils::logmesg(
+        lmp, "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} {:.10g}\n",
+        deleted.points, deleted.mass, deleted.momentum[0], deleted.momentum[1],
+        deleted.momentum[2]);
   utils::logmesg(lmp, field.frame->report());
   if (field.guard->nbad())
     utils::logmesg(lmp, "  {} bad point updates so far (policy {})\n", field.guard->nbad(),

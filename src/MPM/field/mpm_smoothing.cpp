@@ -46,12 +46,11 @@ void MPMSmoothing::init()
   if (std::none_of(field.materials.begin(), field.materials.end(), [](auto *material) {
         return material->material->is_barotropic();
       }))
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm {}: smooth is for fluids whose pressure depends on their density alone, but "
-        "there is none: remove it, or use a material with eos tait or linear, without strength "
-        "and history variables",
-        field.id());
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm {}: smooth is for fluids whose pressure depends on their density alone, "
+               "but there is none: remove it, or use a material with eos tait or linear, without "
+               "strength and history variables",
+               field.id());
 }
 
 /** To the sums of a node, for a point at r from it; V: volume times weight. */

@@ -131,15 +131,13 @@ void MPMTimeLimit::check()
     if (c == 0.0)
       error->one(FLERR,
                  "Time step {:.6g} is above the limit {:.6g} of other physics, such as conduction "
-                 "of heat or "
-                 "flow of pore water, at step {}: {}; {}",
+                 "of heat or flow of pore water, at step {}: {}; {}",
                  field.step_dt(), limit, update->ntimestep, field.guard->describe(i), remedy);
-    error->one(FLERR,
-               "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave speed {:.6g}; "
-               "{}",
-               field.step_dt(),
-               field.frame->is_total() ? "s h/c (s: smallest stretch)" : "h/(c+|v|)", limit,
-               update->ntimestep, field.guard->describe(i), c, remedy);
+    error->one(
+        FLERR,
+        "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave speed {:.6g}; {}",
+        field.step_dt(), field.frame->is_total() ? "s h/c (s: smallest stretch)" : "h/(c+|v|)",
+        limit, update->ntimestep, field.guard->describe(i), c, remedy);
   }
 }
 
@@ -149,7 +147,7 @@ void MPMTimeLimit::check()
  *  With points of finite size it is proportional to the square root of their half size s in node
  *  spacings, as the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s).
  *  Domains (CPDI) do not depend on size. Linear functions without any limit have warnings of their
- *  own, see mpm_stage_light.cpp and share_of_thin_nodes(). */
+ *  own, see blend_light_nodes() and share_of_thin_nodes(). */
 double MPMTimeLimit::stable_share(double size) const
 {
   const auto &options = field.options;
@@ -234,9 +232,9 @@ void MPMTimeLimit::warn() const
   if (comm->me == 0 && share < 1.0 && field.step_dt() > share * all[0])
     error->warning(
         FLERR,
-        "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and "
-        "scheme can be unstable above {:.2g}, depending on where points are in their cells: "
-        "use fix mpm/dt {:.2g} or less, or another scheme{}",
+        "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and scheme can be "
+        "unstable above {:.2g}, depending on where points are in their cells: use fix mpm/dt "
+        "{:.2g} or less, or another scheme{}",
         field.id(), field.step_dt() / all[0], share, share,
         field.frame->is_total() ? ", or an origin for which faces of the body are on nodes" : "");
 }
@@ -257,12 +255,11 @@ void MPMTimeLimit::warn_of_small() const
   const double dt = field.step_dt();
   if (update->dt_default) {
     if (dt < (force->pair ? 0.1 : 1.0) * SMALL * limit)
-      error->warning(
-          FLERR,
-          "Fix mpm: the time step {:.3g}, which no command has set since units {} or read_restart, "
-          "is next to nothing for the limit {:.3g} of these points: use fix mpm/dt 0.5, or "
-          "timestep",
-          dt, update->unit_style, limit);
+      error->warning(FLERR,
+                     "Fix mpm: the time step {:.3g}, which no command has set since units {} or "
+                     "read_restart, is next to nothing for the limit {:.3g} of these points: use "
+                     "fix mpm/dt 0.5, or timestep",
+                     dt, update->unit_style, limit);
     return;
   }
   const bool free = !force->pair && field.elements.empty() &&

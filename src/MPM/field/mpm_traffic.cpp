@@ -20,9 +20,6 @@
 #include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
-#include "modify.h"
-
-#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;

@@ -26,7 +26,6 @@
 #include "field/mpm_passes.h"
 #include "force.h"
 #include "math/matrix.h"
-#include "update.h"
 
 #include <algorithm>
 

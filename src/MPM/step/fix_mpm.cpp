@@ -106,14 +106,14 @@ void FixMPM::init()
     error->all(FLERR, "Fix mpm requires run_style verlet");
   if (update->whichflag == 2)
     error->all(FLERR,
-               "Fix mpm cannot be used with minimize, which would move material points like "
-               "atoms: minimize before the fix is defined");
+               "Fix mpm cannot be used with minimize, which would move material points like atoms: "
+               "minimize before the fix is defined");
   field->points = MPMPoints::get(atom);
   field->check_box();
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR,
-               "Fix mpm requires a box of constant size and shape: remove the fix that "
-               "changes it, or use fix mpm/deform to strain a periodic cell");
+               "Fix mpm requires a box of constant size and shape: remove the fix that changes it, "
+               "or use fix mpm/deform to strain a periodic cell");
   if (comm->me == 0)
     for (const auto &text : MPMFieldOptions(field->options).declare(3).warnings())
       error->warning(FLERR, text);
@@ -131,7 +131,7 @@ void FixMPM::init()
   }
 
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
-  // material points may well be moved by others; check_integrators() looks at the points
+  // material points may well be moved by others; MPMSetupChecks looks at the points
 
   time_integrate = 1;
   for (auto *other : modify->get_fix_list())
@@ -314,11 +314,6 @@ double FixMPM::bytes_per_point() const
   return bytes;
 }
 
-double FixMPM::memory_usage()
-{
-  return FixMPMState::memory_usage() + field->memory_usage();
-}
-
 /** Totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
  *  neighbor lists are made, the options that a run must go on with, the duration of the last step,
  *  and what else the run has. */
@@ -385,11 +380,10 @@ void FixMPM::restart(char *buf)
                       .declare(3)
                       .differences(std::string(text, text + saved.ntext));
   if (!differences.empty())
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm {} has other options than in the restart file: {}; give it those of the file, "
-        "or another ID to begin anew",
-        id, differences);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm {} has other options than in the restart file: {}; give it those of the "
+               "file, or another ID to begin anew",
+               id, differences);
 
   // without it, the first step counts for the one before, as in a run from the start
   double dt = 0.0;

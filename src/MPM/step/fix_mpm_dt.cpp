@@ -30,7 +30,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -144,12 +143,6 @@ FixMPMDt::Limit FixMPMDt::point_limit() const
   speed = 0.0;
   for (const auto *other : find_fixes<MPMStepLimit>(lmp)) compare(other->stable_dt(tag));
   return smallest(mine);
-}
-
-/** The time step that a limit allows; without one, the largest number that there is. */
-double FixMPMDt::allowed(const Limit &limit) const
-{
-  return limit.dt < NO_POINTS.dt ? fraction * limit.dt : NO_POINTS.dt;
 }
 
 double FixMPMDt::grain_dt(const Limit &limit) const
@@ -329,9 +322,8 @@ std::string FixMPMDt::what_limits() const
   if (limit.other == 0.0) return fmt::format("the collision of grain {} with a wall", tag);
   if (tag == 0) return "a rigid body of fix mpm/rigid";
   if (limit.speed == 0.0)
-    return fmt::format("point {} (its change of volume, other physics, or the gas of a fix "
-                       "mpm/airbag)",
-                       tag);
+    return fmt::format(
+        "point {} (its change of volume, other physics, or the gas of a fix mpm/airbag)", tag);
   return fmt::format("point {} (wave speed {:.6g})", tag, limit.speed);
 }
 
@@ -366,10 +358,10 @@ void FixMPMDt::post_run()
   if (ended)
     timer->reset_timeout();
   else if (comm->me == 0 && update->nsteps > 0 && !warned_of_rest)
-    error->warning(FLERR,
-                   "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run "
-                   "more steps",
-                   id, elapsed_time(*update), until);
+    error->warning(
+        FLERR,
+        "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run more steps",
+        id, elapsed_time(*update), until);
   warned_of_rest = warned_of_rest || update->nsteps > 0;    // once: runs can have many parts
 }
 

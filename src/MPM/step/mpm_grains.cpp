@@ -341,10 +341,9 @@ void LAMMPS_NS::warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::s
   MPI_Allreduce(&mine, &pairs, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
   MPI_Allreduce(&type, &first, 1, MPI_INT, MPI_MIN, lmp->world);
   if (pairs && lmp->comm->me == 0)
-    lmp->error->warning(
-        FLERR,
-        "{}: at least {} pairs of its material points touch as grains by the pair style, "
-        "whose forces are added to the stress of the material: use neigh_modify "
-        "exclude type {} {}, or keyword lists of fix mpm/surface",
-        who, pairs, first, first);
+    lmp->error->warning(FLERR,
+                        "{}: at least {} pairs of its material points touch as grains by the pair "
+                        "style, whose forces are added to the stress of the material: use "
+                        "neigh_modify exclude type {} {}, or keyword lists of fix mpm/surface",
+                        who, pairs, first, first);
 }

@@ -112,14 +112,13 @@ void MPMContactSearch::check_gaps(MPMWallNodes &list, double dt)
   }
   std::array<double, 5> first;
   if (!first_gap.report(world, first) || comm->me) return;
-  error->warning(
-      FLERR,
-      "Fix mpm/boundary {}: its region {} holds material near {:.6g} {:.6g} {:.6g} across "
-      "a gap from step {:.0f} on, as nodes on both sides see it: with {} forces begin "
-      "before the material is touched. Use separate, or start with the region at the "
-      "surface of the material; this is said only once",
-      wall.id, wall.region_id, first[2], first[3], first[4], first[0],
-      wall.kind == MPMWall::STICK ? "stick" : "slip");
+  error->warning(FLERR,
+                 "Fix mpm/boundary {}: its region {} holds material near {:.6g} {:.6g} {:.6g} "
+                 "across a gap from step {:.0f} on, as nodes on both sides see it: with {} forces "
+                 "begin before the material is touched. Use separate, or start with the region at "
+                 "the surface of the material; this is said only once",
+                 wall.id, wall.region_id, first[2], first[3], first[4], first[0],
+                 wall.kind == MPMWall::STICK ? "stick" : "slip");
 }
 
 void MPMContactSearch::find_region_contacts(MPMWallNodes &list, double dt, double tolerance)

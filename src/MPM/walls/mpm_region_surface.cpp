@@ -19,7 +19,6 @@
 
 #include "walls/mpm_region_surface.h"
 
-#include "domain.h"
 #include "math_extra.h"
 #include "region.h"
 #include "walls/region_mpm_mesh.h"

@@ -62,9 +62,9 @@ void MPMThinRegions::report()
     error->warning(
         FLERR,
         "Fix mpm/boundary {}: its region {} is thinner than 1.5 node spacings of fix mpm {} near "
-        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {:.0f}): "
-        "its force can be wrong by tens of percent or zero, and material can pass through it. "
-        "Make it thicker there, or the spacing smaller; this is said only once",
+        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {:.0f}): its "
+        "force can be wrong by tens of percent or zero, and material can pass through it. Make it "
+        "thicker there, or the spacing smaller; this is said only once",
         wall.id, wall.region_id, wall.fields[(std::size_t) place[1]]->id(), place[2], place[3],
         place[4], place[0]);
 }

@@ -50,8 +50,8 @@ void MPMWall::init_region()
                "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
   if (region->dynamic_check() && region->nregion > 1)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/boundary cannot use region {}: a union or intersection must not move; "
-               "use one fix mpm/boundary for each member",
+               "Fix mpm/boundary cannot use region {}: a union or intersection must not move; use "
+               "one fix mpm/boundary for each member",
                region_id);
 }
 
@@ -101,11 +101,6 @@ bool MPMWall::holds_surface() const
 {
   const bool sticks = !is_driven() && !in_implicit_steps;
   return (kind == STICK ? sticks : kind == SLIP && friction == 0.0) && !moves_and_holds;
-}
-
-bool MPMWall::keeps_distance() const
-{
-  return region ? holds_surface() : !decides();
 }
 
 bool MPMWall::prescribes(const double *normal, int d) const
@@ -366,8 +361,7 @@ Options MPMBoundaryOptions::declare(int dim)
   o.add("displacement",
         {variables(velocity, 3, "ux uy uz", "distance",
                    "displacement of the wall since this fix was defined, instead of its velocity; "
-                   "can be variables; with "
-                   "*stick*, NULL leaves a component free",
+                   "can be variables; with *stick*, NULL leaves a component free",
                    true)})
       .then([this] {
         by_displacement = true;

@@ -142,7 +142,7 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
   /** Do lines hold material in front of the surface? */
   bool holds_surface() const;
   /** Does the wall hold material that is near, whether or not that has reached it? */
-  bool keeps_distance() const;
+  bool keeps_distance() const { return region ? holds_surface() : !decides(); }
   /** Is the action of the wall known before a step? It is not where it depends on the impulses that
    *  the wall gets, or where the region moves and takes other nodes. */
   bool is_predictable() const { return !decides() && !region_moves(); }

@@ -131,11 +131,6 @@ void MPMWallReaction::add(MPMField &field, int64_t node, const double *push)
   if (field.ledger.on) field.ledger.transfer += (gained - moved) * force->mvv2e;
 }
 
-void MPMWallReaction::begin_sliding(const double *normal)
-{
-  sliding = heating && counting ? normal : nullptr;
-}
-
 /** Gives the heat of friction to a node whose velocity changes to v. The work of the tangential
  *  impulse was counted with another velocity; returns the work per mass that the ledger must
  *  add. */

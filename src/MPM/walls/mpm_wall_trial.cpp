@@ -49,11 +49,6 @@ static constexpr double NOT_KNOWN = 0.03;
 static constexpr double THROUGH = 0.5;     // node spacings in the wall where contact has failed
 static constexpr double AT_WALL = 0.01;    // node spacings
 
-double MPMWallTrial::tolerance()
-{
-  return NOT_KNOWN;
-}
-
 bool MPMWallTrial::decides(const MPMWallNodes &list) const
 {
   return in_trials && (wall.decides() || wall.moves_and_holds) && &list.field == field;
@@ -91,7 +86,7 @@ void MPMWallTrial::begin_trials(MPMField &of, double step, double time, double r
   rounds = 0;
   list.approaches.clear();
   if (separates) {
-    search.find_contacts(list, dt, tolerance());
+    search.find_contacts(list, dt, NOT_KNOWN);
     search.find_approaches(list, dt);
     find_clearance(list);
   } else if (wall.moves_and_holds && wall.acts_across()) {

@@ -40,8 +40,6 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   bool decides(const MPMWallNodes &) const;
   /** Has a solver begun trials in this run? */
   bool has_begun() const { return in_trials; }
-  /** Distance in node spacings at which material counts as touching the wall. */
-  static double tolerance();
   /** The friction acts on the nodes at the end of the step, before walls act. */
   void apply_friction(MPMWallReaction &);
   /** Holds the material that was not at the wall at the start of the step. */

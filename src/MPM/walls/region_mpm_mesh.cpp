@@ -150,27 +150,26 @@ void RegMPMMesh::report(const char *file) const
     const double size = std::sqrt(MathExtra::distsq3(mesh->lo.data(), mesh->hi.data()));
     utils::logmesg(
         lmp,
-        "  {} open edges around {} hole{}, the widest with {:.4g} ({:.3g} % of the body) "
-        "at {:.6g} {:.6g} {:.6g}, patches with {:.3g} % of the area of the surface\n",
+        "  {} open edges around {} hole{}, the widest with {:.4g} ({:.3g} % of the body) at {:.6g} "
+        "{:.6g} {:.6g}, patches with {:.3g} % of the area of the surface\n",
         found.edges, found.holes, found.holes > 1 ? "s" : "", found.widest,
         100.0 * found.widest / size, found.at[0], found.at[1], found.at[2], 100.0 * found.area);
   }
   if (mesh->overlaps)
     utils::logmesg(lmp, "  parts overlap: the volume above has what they share several times\n");
-  error->warning(FLERR,
-                 "The surface of file {} is leaky: look at the region that it fills before you "
-                 "trust it",
-                 file);
+  error->warning(
+      FLERR,
+      "The surface of file {} is leaky: look at the region that it fills before you trust it",
+      file);
 }
 
 void RegMPMMesh::need_distance() const
 {
   if (leaky)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Region {} has surface leaky, so that only what is inside of it is known and it cannot "
-        "be a wall or a rigid body: repair its mesh and use surface closed",
-        id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Region {} has surface leaky, so that only what is inside of it is known and it "
+               "cannot be a wall or a rigid body: repair its mesh and use surface closed",
+               id);
 }
 
 RegMPMMesh::~RegMPMMesh()
@@ -254,11 +253,10 @@ bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact,
 int RegMPMMesh::touch(const double *x, double cutoff, double side)
 {
   if (leaky)
-    error->one(
-        FLERR, Error::NOLASTLINE,
-        "Region {} has surface leaky, so that only what is inside of it is known and it cannot "
-        "be a wall: repair its mesh and use surface closed",
-        id);
+    error->one(FLERR, Error::NOLASTLINE,
+               "Region {} has surface leaky, so that only what is inside of it is known and it "
+               "cannot be a wall: repair its mesh and use surface closed",
+               id);
   const SurfaceMesh::Point here = {x[0], x[1], x[2]};
   const double known = mesh->bound(here);
   if (known * side < 0.0 || std::fabs(known) >= cutoff) return 0;

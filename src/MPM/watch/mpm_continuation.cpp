@@ -22,7 +22,6 @@
 
 #include <cfloat>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <map>
 
@@ -132,8 +131,8 @@ void MPMContinuation::check_points() const
   if (differ(mass, mass_then))
     error->warning(FLERR,
                    "Fix mpm {}: its points have the mass {:.6g} in the restart file and {:.6g} "
-                   "now: the file has the points, so that commands such as create_points, set, "
-                   "and delete_atoms must not be repeated, and groups not be defined anew",
+                   "now: the file has the points, so that commands such as create_points, set, and "
+                   "delete_atoms must not be repeated, and groups not be defined anew",
                    field.id(), mass_then, mass);
   else if (differ(motion, motion_then))
     error->warning(FLERR,
@@ -167,8 +166,8 @@ void MPMContinuation::check(bool first)
     const std::string missing = missing_fixes();
     if (!missing.empty())
       error->warning(FLERR,
-                     "The run that wrote the restart file had {}, which this one has not: "
-                     "restart files have no commands, repeat all that shall go on to act",
+                     "The run that wrote the restart file had {}, which this one has not: restart "
+                     "files have no commands, repeat all that shall go on to act",
                      missing);
     const int then = (int) value(expected, "exclusions"), now = exclusions(*neighbor);
     const bool include = value(expected, "include") != 0.0;

@@ -278,9 +278,9 @@ std::string MPMEnergyWatch::report() const
 {
   if (run.steps < SHORTEST) return "";
   const double took = run.start.unexplained() - run.lowest;
-  return fmt::format("  energy {}at the end: kinetic {:.6g}, stored {:.6g}; since the start "
-                     "transfers and friction took {:.3g} ({:.3g} % of the energy in play), and "
-                     "numerical errors added {:.3g}\n",
-                     fields.size() > 1 ? "of all fields " : "", run.last.kinetic, run.last.stored,
-                     took, run.in_play > 0.0 ? 100.0 * took / run.in_play : 0.0, run.gained);
+  return fmt::format(
+      "  energy {}at the end: kinetic {:.6g}, stored {:.6g}; since the start transfers and "
+      "friction took {:.3g} ({:.3g} % of the energy in play), and numerical errors added {:.3g}\n",
+      fields.size() > 1 ? "of all fields " : "", run.last.kinetic, run.last.stored, took,
+      run.in_play > 0.0 ? 100.0 * took / run.in_play : 0.0, run.gained);
 }

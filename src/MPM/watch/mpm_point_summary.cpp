@@ -101,15 +101,14 @@ std::string LAMMPS_NS::point_extremes(LAMMPS *lmp, const MPMField &field)
     text = fmt::format(", at the end {:.2g} of the limit {:.6g}", field.step_dt() / limit, limit);
   if (all[1].value == NONE) return text;
   if (-all[0].value < COLLAPSED && lmp->comm->me == 0)
-    lmp->error->warning(FLERR,
-                        "Fix mpm {}: point {} has been pressed to {:.3g} of its volume: its law "
-                        "bears no more than a finite pressure, or none (corotated, "
-                        "stvenant/kirchhoff, ...), beyond which points vanish: use one that "
-                        "becomes stiff (neohookean), or check loads and units",
-                        field.id(), of_all[0], -all[0].value);
+    lmp->error->warning(
+        FLERR,
+        "Fix mpm {}: point {} has been pressed to {:.3g} of its volume: its law bears no more than "
+        "a finite pressure, or none (corotated, stvenant/kirchhoff, ...), beyond which points "
+        "vanish: use one that becomes stiff (neohookean), or check loads and units",
+        field.id(), of_all[0], -all[0].value);
   return text +
-      fmt::format(
-             "\n  volumes {:.4g} (point {}) to {:.4g} (point {}) times the initial ones, speeds "
-             "up to {:.4g} (point {})",
-             -all[0].value, of_all[0], all[1].value, of_all[1], all[2].value, of_all[2]);
+      fmt::format("\n  volumes {:.4g} (point {}) to {:.4g} (point {}) times the initial ones, "
+                  "speeds up to {:.4g} (point {})",
+                  -all[0].value, of_all[0], all[1].value, of_all[1], all[2].value, of_all[2]);
 }
