@@ -9,7 +9,6 @@
 #include "elements/fix_mpm_elements.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_image.h"
 #include "base/mpm_input.h"
 #include "base/mpm_options.h"

@@ -21,7 +21,6 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_interfaces.h"
-#include "field/mpm_internal_force.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_nodes.h"
@@ -382,4 +381,19 @@ void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
   const auto *const other = dynamic_cast<Fix *>(*who);
   utils::logmesg(lmp, "Fix mpm {}: stress gradient, the default with fix {} {}\n", id(),
                  other->style, other->id);
+}
+
+void MPMJacobians::keep(const BatchKernels &kernels, const Batch &batch, int first, int nmax)
+{
+  if (J.size() < (std::size_t) nmax) J.resize(nmax);
+  kernels.jacobians(batch.F, batch.n, J.data() + first);
+  known = true;
+}
+
+void MPMJacobians::find(const MPMField &field, int first, int n, double *J)
+{
+  double F[9][BATCH];
+  for (int p = 0; p < n; p++)
+    for (int c = 0; c < 9; c++) F[c][p] = field.points->F[first + p][c];
+  field.batch_kernels->jacobians(F, n, J);
 }

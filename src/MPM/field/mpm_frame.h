@@ -20,7 +20,7 @@ namespace LAMMPS_NS {
 
 /** The configuration that the nodes belong to, and the strain of points in it. This class is the
  *  updated Lagrangian frame, in which nodes are places in space. Other frames derive from it; the
- *  frame of an axis of symmetry wraps another frame, see mpm_frame_axisymmetric.cpp.
+ *  frame of an axis of symmetry wraps another frame.
  *
  *  Functions with a range of points are called once for each batch. */
 class MPMFrame : protected Pointers {

@@ -6,31 +6,31 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* A tangential impulse J_t between bodies of relative velocity u takes the kinetic energy
- *  J_t . (u_old + u_new)/2 from the nodes, which is the heat where the bodies slide. */
-
 #include "field/mpm_friction_heat.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
-#include "field/mpm_conductivity.h"
 #include "field/mpm_field.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_passes.h"
 #include "fix.h"
 #include "force.h"
 #include "material/material.h"
+#include "math_extra.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+/* A tangential impulse J_t between bodies of relative velocity u takes the kinetic energy
+ *  J_t . (u_old + u_new)/2 from the nodes, which is the heat where the bodies slide. */
 
 void MPMFrictionHeatOptions::declare(Options &o, const char *yes, const char *first)
 {
@@ -244,4 +244,37 @@ double MPMFrictionHeat::memory_usage() const
   double bytes = (values.capacity() + weights.capacity()) * sizeof(double);
   for (const auto &body : bodies) bytes += body.at_node.capacity() * sizeof(double);
   return bytes;
+}
+
+/** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7
+ *  (1986) 1160). */
+static void rotation(const double *F, double R[3][3])
+{
+  static constexpr int MOST = 30;
+  memcpy(R, F, 9 * sizeof(double));
+  for (int k = 0; k < MOST; k++) {
+    double inverse[3][3], change = 0.0;
+    MathExtra::invert3(R, inverse);
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) {
+        const double next = 0.5 * (R[a][b] + inverse[b][a]);
+        change = std::max(change, fabs(next - R[a][b]));
+        inverse[b][a] = next;
+      }
+    MathExtra::transpose3(inverse, R);
+    if (change < 1.0e-14) return;
+  }
+}
+
+void LAMMPS_NS::principal_conductivities(const Conduction &c, const double *F, double k[3],
+                                         double n[3][3])
+{
+  k[0] = c.conductivity;
+  for (int a = 1; a < 3; a++) k[a] = c.orthotropic ? c.across[a - 1] : c.conductivity;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) n[a][b] = a == b;
+  if (!c.orthotropic) return;
+  double R[3][3];
+  rotation(F, R);
+  MathExtra::times3_transpose(c.axis, R, n);
 }

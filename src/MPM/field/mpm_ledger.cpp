@@ -11,7 +11,7 @@
 #include "atom.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"

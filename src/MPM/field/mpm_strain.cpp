@@ -16,7 +16,7 @@
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_point_batches.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"

@@ -17,7 +17,7 @@
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"

@@ -22,7 +22,7 @@
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_time_limit.h"

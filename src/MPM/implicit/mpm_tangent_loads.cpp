@@ -15,7 +15,7 @@
 
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_plan.h"
 #include "implicit/mpm_tangent_gather.h"
 #include "material/batch_kernels.h"

@@ -15,7 +15,7 @@
 
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_stencil.h"
 
 #include <algorithm>

@@ -48,7 +48,6 @@
 #include "pore/mpm_pore.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"

@@ -61,7 +61,6 @@
 #include "pore/mpm_pore_motion.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_points.h"
 #include "field/mpm_field.h"
 #include "field/mpm_passes.h"

@@ -16,7 +16,6 @@
 #include "error.h"
 #include "field/mpm_field.h"
 #include "field/mpm_interfaces.h"
-#include "field/mpm_internal_force.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"
 #include "integrate.h"

@@ -14,7 +14,7 @@
 #include "field/mpm_every.h"
 #include "field/mpm_field.h"
 #include "field/mpm_guard.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "force.h"

@@ -14,7 +14,7 @@
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_batches.h"
 #include "field/mpm_time_limit.h"
