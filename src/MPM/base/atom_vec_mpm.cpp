@@ -61,7 +61,6 @@ AtomVecMPM::AtomVecMPM(LAMMPS *lmp) : AtomVec(lmp)
   // F and stress go with the bonus data of LAMMPS, which a style keeps by itself
   // border: ghost points need nothing of this style (a sphere style sends radius and mass)
   // data_vel: must not have more columns than comm_vel, write_data relies on it
-
   fields_grow = fields_copy = fields_exchange = fields_restart = fields_create = {"rmass", "vfrac"};
   fields_data_atom = {"id", "type", "rmass", "vfrac", "x"};
   fields_data_vel = {"id", "v"};

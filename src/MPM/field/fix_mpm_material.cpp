@@ -77,7 +77,6 @@ void FixMPMMaterial::init()
   assign_mass();
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
-
   if (mass_varies) return;
   bigint n = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {

@@ -85,7 +85,6 @@ void MPMAffine::fit()
   if (!all) return;
 
   // at rest, or all with one velocity: spares the sums below, which are the peak of memory
-
   double range[6], range_all[6];    // largest velocity, and largest with the opposite sign
   for (double &r : range) r = -DBL_MAX;
   for (int i = 0; i < atom->nlocal; i++)
@@ -127,7 +126,6 @@ void MPMAffine::fit()
   field.nodes.complete(sums.data(), NREAL, NREAL);
 
   // about the means
-
   for (double *s = sums.data(); s < sums.data() + sums.size(); s += NREAL) {
     if (s[M] <= 0.0) continue;
     for (int a = 0, k = 0; a < dim; a++) {
@@ -220,7 +218,6 @@ void MPMAffine::angular_momentum(int i, double L[3]) const
   const int dim = field.lattice.dim;
 
   // the functions at the point or, of domains, at their corners
-
   int ncorner = 1;
   double corner[24] = {0.0}, share[8] = {1.0}, size[3];
   if (field.domains) {

@@ -148,7 +148,6 @@ void MPMField::init(MPMPlan *plan_of_all)
   if (heating) heating->init();
 
   // the same instruction set for transfers, batches and laws
-
   static const char *const sets[] = {nullptr, "reference", "baseline", "avx2", "avx512"};
   const char *wanted = sets[options.kernels];
   kernels = MPMKernels::select(wanted);
@@ -285,7 +284,6 @@ PointRows MPMField::rows_at_rest(double *values, const double *weights)
 {
   // a value of a node that is not finite moves points even in no time, and the next transfer would
   // look for their nodes; they stay where they are until the guard has seen the velocity
-
   work.places.resize(3 * (std::size_t) atom->nmax);
   PointRows r = rows();
   r.v = values;

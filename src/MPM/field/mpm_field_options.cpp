@@ -158,7 +158,6 @@ Options MPMFieldOptions::declare(int dim)
       "instruction set of the transfers and the materials");
 
   // what does not go together
-
   const auto amplifies = [this] {
     return changes_cells() && shape == LINEAR && (scheme == USL || is_affine(transfer));
   };
@@ -220,7 +219,6 @@ Options MPMFieldOptions::declare(int dim)
   });
 
   // what is likely to be a mistake
-
   o.warn([=] {
     return OptionRules{
         {series == XPIC && order > 1 && scheme != USL, "transfer",

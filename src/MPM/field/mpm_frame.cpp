@@ -369,7 +369,6 @@ template <class Plane> class MPMFrameAxisymmetric : public Plane {
 
   // strain around the axis in this step from the motion, exactly that of the radius. Total frame:
   // dv of F_zz = r/R is relative to R
-
   void begin_strain() override { hoop.resize(atom->nmax); }
   void before_motion(int first, int last) override
   {

@@ -50,7 +50,6 @@ void MPMGuard::check_positions()
 {
   // nothing can be done with a point whose position is not finite: unless it is deleted, it ends
   // the run as one outside the box
-
   each_point(field, [&](const MPMPointMap::Run &, int i) {
     const double *x = atom->x[i];
     if (std::isfinite(x[0] + x[1] + x[2])) return;

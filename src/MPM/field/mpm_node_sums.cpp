@@ -257,7 +257,6 @@ void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
   });
 
   // behind a fixed face, the mirror image: nothing can get between it and the body
-
   const int nreal = pic.nreal;
   double *const volume = nodes.data() + 3;
   MPMEdges faces(field.lmp, field);

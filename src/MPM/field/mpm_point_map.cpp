@@ -168,7 +168,6 @@ void MPMPointMap::find_blocks()
   switches = 0;
 
   // runs, and the range of base coordinates of each block
-
   struct Range {
     double lo[3], hi[3];
   };
@@ -224,7 +223,6 @@ void MPMPointMap::find_blocks()
 
   // blocks that the points can reach before the next update, which comes when a point leaves its
   // tile at the latest: all around the block, if nothing else bounds the drift
-
   const double least = field.domains ? 1.0e-6 : 0.0;    // see MPMCpdi::update()
   constexpr double ROUNDING =
       1.0e-6;    // of places, in cells; kernels may see them in the next cell
@@ -297,7 +295,6 @@ void MPMPointMap::sort()
   const int nlocal = atom->nlocal;
 
   // key of a point: (block in order of first appearance, material, cell)
-
   const int nmaterials = std::max(1, (int) field.materials.size());
   const int keys_per_block = nmaterials * NODES_PER_BLOCK;
   const int mask = field.grid.side - 1;
@@ -324,7 +321,6 @@ void MPMPointMap::sort()
   }
 
   // blocks in order of their coordinates
-
   std::vector<int> rank(index_of_block.size());
   int nblocks = 0;
   for (const auto &entry : index_of_block) rank[entry.second] = nblocks++;
@@ -366,7 +362,6 @@ void LAMMPS_NS::put_in_order(LAMMPS *lmp, std::vector<int> &key, int nkeys)
 
   // ghosts refer to the old order, and the first of them is in the free place that is used below:
   // the map must forget them before
-
   const bool mapped = atom->map_style != Atom::MAP_NONE;
   const bool moves = !std::is_sorted(permute.begin(), permute.end());
   bigint renew = atom->nghost + (moves && mapped), renew_all;
@@ -378,7 +373,6 @@ void LAMMPS_NS::put_in_order(LAMMPS *lmp, std::vector<int> &key, int nkeys)
   }
 
   // move the atoms, cycle by cycle, through the free place at the end
-
   if (nlocal == atom->nmax) atom->avec->grow(0);
   std::vector<int> &current = key;
   for (int i = 0; i < nlocal; i++) current[i] = i;

@@ -225,7 +225,6 @@ template <int DIM> static void find_scales(const double *ratio, int n, double *s
     return;
   }
   // a series within 1e-5, and one step of Halley, which is of third order
-
   for (int p = 0; p < n; p++) {
     constexpr double second = DIM == 3 ? 1.0 / 9.0 : 1.0 / 8.0;
     const double d = ratio[p] - 1.0, s = 1.0 + d * (1.0 / DIM - d * second);

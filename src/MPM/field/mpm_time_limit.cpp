@@ -81,7 +81,6 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
     }
 
     // consecutive points of one material
-
     const FixMPMMaterial *material = field.material_of(i);
     while (last < atom->nlocal && last < i + BATCH && field.is_point(last) &&
            field.material_of(last) == material && !field.is_element_node(last))

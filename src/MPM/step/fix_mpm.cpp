@@ -10,7 +10,6 @@
 
 #include "atom.h"
 #include "base/mpm_options.h"
-#include "base/mpm_pair_styles.h"
 #include "base/mpm_points.h"
 #include "base/mpm_version.h"
 #include "comm.h"
@@ -37,6 +36,7 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
+#include "step/mpm_grains.h"
 #include "step/mpm_stages.h"
 #include "update.h"
 #include "watch/mpm_continuation.h"
@@ -119,7 +119,6 @@ void FixMPM::init()
       error->warning(FLERR, text);
 
   // all fields step together, driven by the first one
-
   plan.reset();
   if (modify->get_fix_by_style("^mpm$")[0] == this) {
     for (auto *each : MPMField::all(lmp))
@@ -132,20 +131,17 @@ void FixMPM::init()
 
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
   // material points may well be moved by others; MPMSetupChecks looks at the points
-
   time_integrate = 1;
   for (auto *other : modify->get_fix_list())
     if (other != this && other->time_integrate) time_integrate = 0;
 
   // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none. It
   // would warn of this one, too, as soon as there is a pair style
-
   const double nothing = 1.0e-8 * field->lattice.h;
   if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
   if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
 
   // points are kept in order of blocks and cells here
-
   atom->sortfreq = 0;
 }
 
@@ -200,7 +196,6 @@ void FixMPM::setup_pre_neighbor()
   checks->run(MPMSetupChecks::PLACES, first);
 
   // other physics may ask for the points of any field
-
   const auto &all = field->plan->fields;
   if (field.get() != all.back()) return;
   for (auto *physics : find_fixes<MPMPhysics>(lmp)) physics->setup_points();

@@ -43,7 +43,6 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
   int iarg = read_place(narg, arg);
 
   // arguments: what the wall does
-
   Options options = wall.declare(domain->dimension);
   read_options(lmp, options, narg, arg, iarg);
   if (options.given("velocity") && options.given("displacement"))
@@ -106,7 +105,6 @@ int FixMPMBoundary::read_place(int narg, char **arg)
 void FixMPMBoundary::init()
 {
   // fields, in the order of their definition
-
   require_field(lmp, *this);
   nodes.clear();    // listed with the topology
   wall.fields.clear();
@@ -172,7 +170,6 @@ void FixMPMBoundary::check_master(int face) const
                  FACE_NAME[face], id, other->id);
 
     // opposite face
-
     if (!std::count(other->wall.face_list.begin(), other->wall.face_list.end(), face ^ 1)) continue;
     for (const auto &list : nodes) {
       const auto &field = list.field;

@@ -238,7 +238,6 @@ void MPMContactSearch::leave_out_acting(MPMWallNodes &list, MPMBoxFace *face, Li
   if (!wall.moves_and_holds) return;
 
   // a wall that holds needs only lines that replace those which cannot act
-
   std::set<Key> instead;
   for (const auto &line : list.crossings.lines)
     if (!line.touched && line.is_in_front(field.grid)) instead.insert(key_on(line));

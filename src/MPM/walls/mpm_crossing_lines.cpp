@@ -75,7 +75,6 @@ void MPMCrossingLines::list(const std::vector<MPMWallNode> &nodes,
 
   // lines along one axis share no nodes; lines along two axes do, and so do lines through both
   // faces of a thin plate: the same order on all ranks
-
   std::stable_sort(lines.begin(), lines.end(), [](const MPMCrossing &a, const MPMCrossing &b) {
     if (a.front != b.front || a.axis != b.axis || a.front == MPMCrossing::SOUND)
       return std::tie(a.front, a.axis) < std::tie(b.front, b.axis);
@@ -138,7 +137,6 @@ bool MPMCrossingLines::find_surface(const MPMWallNode &node, MPMCrossing &c, dou
 
   // where does the line cross the surface, and is this node the last one before it? On the surface
   // itself, round-off decides on the side, and some regions give no side: look a little outside
-
   const double outside = 1.0e-3 * h;
   way = -node.distance / slope + outside;
   double distance = 0.0;
@@ -219,7 +217,6 @@ bool MPMCrossingLines::find(const MPMWallNode &from_node, MPMCrossing &c)
   c.depth = (surface_at - c.place) * cosine;
 
   // is there another face within reach of the material in front?
-
   if (is_outside) c.front = MPMCrossing::NEAR_OTHERS;
   const double surface_x = x[a] + outward * way;
   double at[3] = {x[0], x[1], x[2]};
@@ -318,7 +315,6 @@ void MPMCrossingLines::leave_alone()
 
   // on a curved surface, successive projections on lines that share nodes converge slowly if at
   // all: nodes are held one by one there
-
   lines.erase(std::remove_if(lines.begin(), lines.end(),
                              [](const MPMCrossing &c) {
                                return !c.alone && std::fabs(c.normal[c.axis]) < STRAIGHT;

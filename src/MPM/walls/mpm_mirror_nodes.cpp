@@ -60,7 +60,6 @@ void MPMMirrorNodes::extend_topology() const
   Grid &grid = field.grid;
 
   // blocks that are added are looked at, too: images of images at edges, and narrow channels
-
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++)
     for (const auto &face : faces) {
       int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
@@ -121,7 +120,6 @@ void MPMMirrorNodes::list(std::vector<MPMWallNode> &deep)
 
   // stick: each component is odd about all faces; slip: the normal component is odd about its own
   // face
-
   if (wall.kind == MPMWall::STICK) {
     const bool prescribed[3] = {wall.velocity[0].given, wall.velocity[1].given,
                                 wall.velocity[2].given};
@@ -338,7 +336,6 @@ void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &fa
   if (npairs == 0 && !(r[3] > 0.0)) return;
 
   // impulse that would bring all components to the velocity of the wall
-
   double to_stick[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < dim; d++) {
     to_stick[d] = -r[3] * (r[d] - V[d]);
@@ -347,7 +344,6 @@ void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &fa
   }
 
   // slip: the old normal velocity is constrained, too, which is no impulse
-
   if (wall.kind == MPMWall::SLIP && reaction.old_share() > 0.0) {
     prescribed.hold[a] = true;
     if (column.node[1] >= 0)

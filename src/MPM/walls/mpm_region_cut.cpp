@@ -80,7 +80,6 @@ MPMRegionCut::Part MPMRegionCut::inside(const bigint *s)
   if (volumes) return exact(s);
 
   // corners, a little inward: faces of cells are often those of the region
-
   const int dim = domain->dimension;
   Part all = whole(s);
   bool some = match(all.x), every = some;
@@ -233,7 +232,6 @@ MPMRegionBody::MPMRegionBody(Region &region, int dim)
   const double piece = step[0] * step[1] * (dim == 3 ? step[2] : 1.0);
 
   // sums about the middle of the box
-
   double first[3] = {}, second[3][3] = {};
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++)

@@ -132,7 +132,6 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   const MPMRows x = field.frame->places();
 
   // no place in this ball is seen
-
   double center[3] = {0.0, 0.0, 0.0}, free = -1.0;
   const auto look = [&](const double *place) {
     const double d = away(place);

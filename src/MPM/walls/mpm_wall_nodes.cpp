@@ -148,7 +148,6 @@ void MPMWallNodes::follow_region(double dt)
       if (std::max(std::fabs(distance), std::fabs(node.distance)) >= far) continue;
 
       // the normal speed of the surface replaces that of the rigid motion
-
       wall.motion.velocity(field.grid, node.node, v);
       node.growth = (node.distance - distance) / dt - MathExtra::dot3(v, node.normal);
     }

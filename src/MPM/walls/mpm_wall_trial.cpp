@@ -97,7 +97,6 @@ void MPMWallTrial::begin_trials(MPMField &of, double step, double time, double r
 
   // Where other material touches, round-off would decide whether material next to the wall does. In
   // statics, nothing else may hold it
-
   const std::size_t first_node = list.first_node();
   int any = 0, touched = 0;
   for (std::size_t k = 0; k < constraints.size() && separates; k++)

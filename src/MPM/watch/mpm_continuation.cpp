@@ -22,6 +22,7 @@
 
 #include <cfloat>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 
@@ -39,7 +40,6 @@ static bool acts(const Fix &fix)
   return !(fix.restart_global && utils::strmatch(style, "^mpm"));
 }
 
-/** One line for each: a name and a value, or a fix with its style. */
 void MPMContinuation::sums(double &mass, double &motion) const
 {
   double mine[2] = {0.0, 0.0}, all[2];
@@ -67,6 +67,7 @@ static double value(const std::string &lines, const char *name)
                                  : std::strtod(lines.c_str() + at + strlen(name) + 1, nullptr);
 }
 
+/** One line for each: a name and a value, or a fix with its style. */
 std::string MPMContinuation::state() const
 {
   double mass, motion;
