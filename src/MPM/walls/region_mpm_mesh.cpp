@@ -8,6 +8,7 @@
 
 #include "walls/region_mpm_mesh.h"
 
+#include "base/mpm_input.h"
 #include "base/mpm_options.h"
 #include "comm.h"
 #include "domain.h"
@@ -48,29 +49,23 @@ Options MPMRegionMeshOptions::declare()
   return o;
 }
 
-/** The bytes of a file, which one rank reads, in pieces that a count of MPI can have. */
+/** The bytes of a file, which one rank reads. */
 static std::string read_bytes(LAMMPS *lmp, const char *file)
 {
-  constexpr std::size_t PIECE = 1 << 28;
   std::string bytes, problem;
-  bigint size = 0;
   if (lmp->comm->me == 0) {
     FILE *fp = fopen(file, "rb");
     if (fp) {
       char buffer[65536];
       for (std::size_t n; (n = fread(buffer, 1, sizeof(buffer), fp)) > 0;) bytes.append(buffer, n);
-      if (ferror(fp)) problem = utils::getsyserror();
-      fclose(fp);
-    } else
-      problem = utils::getsyserror();
-    size = problem.empty() ? (bigint) bytes.size() : -1;
+    }
+    if (!fp || ferror(fp)) problem = utils::getsyserror();
+    if (fp) fclose(fp);
   }
-  MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, lmp->world);
-  if (size < 0)
+  broadcast(problem, lmp->world);
+  if (!problem.empty())
     lmp->error->all(FLERR, 2, "Cannot open file {} of region mpm/mesh: {}", file, problem);
-  bytes.resize(size);
-  for (std::size_t at = 0; at < bytes.size(); at += PIECE)
-    MPI_Bcast(&bytes[at], (int) std::min(PIECE, bytes.size() - at), MPI_CHAR, 0, lmp->world);
+  broadcast(bytes, lmp->world);
   return bytes;
 }
 
