@@ -221,7 +221,7 @@ void AtomVecMPM::data_atom_post(int ilocal)
   points->reset(ilocal);
 }
 
-/** Mass to density for AtomVec::pack_data() after a sphere style, rmass is mass / (volume of the
+/** Mass to density for AtomVec::pack_data(). After a sphere style, rmass is mass / (volume of the
  *  sphere), and radius the diameter. */
 void AtomVecMPM::pack_data_pre(int ilocal)
 {

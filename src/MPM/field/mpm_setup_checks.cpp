@@ -382,9 +382,7 @@ void MPMSetupChecks::skin()
 }
 
 /** Blocks of nodes and the order of points work with a large skin, but lists and ghosts grow with
- *  the cube of skin and cutoff. Measured for two touching blocks, cutoff 0.55 and node spacing 1:
- *  with a skin of 0.5 0.7 pairs per atom; with 2, 19 pairs and 2.2 times the time of the run; with
- *  4, 180 pairs and 6.8 times. */
+ *  the cube of skin and cutoff (DECISIONS.md). */
 void MPMSetupChecks::lists_of_pairs()
 {
   constexpr double MANY = 10.0, RATIO = 8.0;    // pairs per atom; ratio for twice the cutoff in 3d

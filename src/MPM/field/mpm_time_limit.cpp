@@ -102,8 +102,7 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   return smallest;
 }
 
-/** Notes the largest change of volume of the points of a batch in this step; inverted ones are
- *  errors anyway. */
+/** Inverted points are errors anyway. */
 void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
 {
   double most = 0.0;
@@ -141,11 +140,9 @@ void MPMTimeLimit::check()
 }
 
 /** Largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
- *  bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from
- *  velocities that the same stress has just changed (USL without affine matrix) reduces it most.
- *  With points of finite size it is proportional to the square root of their half size s in node
- *  spacings, as the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s).
- *  Domains (CPDI) do not depend on size. Linear functions without any limit have warnings of their
+ *  bench/extremes has measured, rounded down. With points of finite size it is proportional to the
+ *  square root of their half size s in node spacings, as a node that they barely reach has the ratio
+ *  E/(rho h^2 s) of stiffness and mass. Linear functions without any limit have warnings of their
  *  own, see blend_light_nodes() and share_of_thin_nodes(). */
 double MPMTimeLimit::stable_share(double size) const
 {

@@ -210,10 +210,8 @@ bool MPMEnergyWatch::is_last_step() const
 }
 
 /** A run may begin in the middle of a vibration: the step before it had about as much as the first
- *  one, in proportion to the velocities. What was at rest is strained by a first step that has a
- *  jump of strain or load, and was not before. Bodies that start with velocities and without strain
- *  are in the middle of their vibration, where stored energy is least: it was as much a step before
- *  as it is a step later. */
+ *  one, in proportion to the velocities. Bodies that start with velocities and without strain have
+ *  least stored energy: as much a step before as a step later. */
 void MPMEnergyWatch::center_start()
 {
   const Sums now = sums();
