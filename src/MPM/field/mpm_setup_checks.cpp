@@ -63,8 +63,8 @@ void MPMSetupChecks::run(When when, bool first)
     if (check.when == when && (first || !check.of_all)) (this->*check.look)();
 }
 
-/** A point must have one integrator; fixes of this style may hide from LAMMPS that they are one, see
- *  FixMPM::init(). */
+/** A point must have one integrator; fixes of this style may hide from LAMMPS that they are one,
+ *  see FixMPM::init(). */
 void MPMSetupChecks::integrators()
 {
   refuse_other_integrators(lmp, field.fix);

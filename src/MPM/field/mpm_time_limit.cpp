@@ -141,9 +141,9 @@ void MPMTimeLimit::check()
 
 /** Largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
  *  bench/extremes has measured, rounded down. With points of finite size it is proportional to the
- *  square root of their half size s in node spacings, as a node that they barely reach has the ratio
- *  E/(rho h^2 s) of stiffness and mass. Linear functions without any limit have warnings of their
- *  own, see blend_light_nodes() and share_of_thin_nodes(). */
+ *  square root of their half size s in node spacings, as a node that they barely reach has the
+ *  ratio E/(rho h^2 s) of stiffness and mass. Linear functions without any limit have warnings of
+ *  their own, see blend_light_nodes() and share_of_thin_nodes(). */
 double MPMTimeLimit::stable_share(double size) const
 {
   const auto &options = field.options;
