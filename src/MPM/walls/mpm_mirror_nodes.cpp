@@ -8,6 +8,7 @@
 
 #include "walls/mpm_mirror_nodes.h"
 
+#include "domain.h"
 #include "field/mpm_field.h"
 #include "walls/mpm_line_constraint.h"
 #include "walls/mpm_wall.h"
@@ -557,6 +558,18 @@ MPMBoxFace::MPMBoxFace(const MPMField &field, const Domain &box, int face) :
   cut = std::fabs(x - plane_x) > MPMWall::ON_SURFACE * h;
   if (cut) nweight = MPMLineConstraint::weights_at(field, axis, inward, x, first, weight);
   contact = contact_of(field, x);
+}
+
+double MPMBoxFace::position(const Domain &box) const
+{
+  return inward > 0 ? box.boxlo[axis] : box.boxhi[axis];
+}
+
+std::function<double(const double *)> MPMBoxFace::distance(const Domain &box) const
+{
+  return [a = axis, sign = inward, place = position(box)](const double *x) {
+    return sign * (x[a] - place);
+  };
 }
 
 static constexpr double FILLED = 0.4;    // share of the volume in reach of the node in front

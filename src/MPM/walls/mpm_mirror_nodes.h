@@ -9,7 +9,6 @@
 #ifndef LMP_MPM_MIRROR_NODES_H
 #define LMP_MPM_MIRROR_NODES_H
 
-#include "domain.h"
 #include "field/node_line.h"
 #include "walls/mpm_wall_contact.h"
 #include "walls/mpm_wall_gap.h"
@@ -19,6 +18,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class Domain;
 class MPMField;
 class MPMWall;
 
@@ -58,17 +58,9 @@ struct MPMBoxFace {
   /** Number of lines or columns. */
   std::size_t size() const { return cut ? lines.size() : columns.size(); }
   /** Position on its axis. */
-  double position(const Domain &box) const
-  {
-    return inward > 0 ? box.boxlo[axis] : box.boxhi[axis];
-  }
+  double position(const Domain &) const;
   /** Distance of a place from the face, positive in the box. */
-  std::function<double(const double *)> distance(const Domain &box) const
-  {
-    return [a = axis, sign = inward, place = position(box)](const double *x) {
-      return sign * (x[a] - place);
-    };
-  }
+  std::function<double(const double *)> distance(const Domain &) const;
   /** Adds the line or column through a node, which is the first one of a line, or in the plane. */
   void add_line(const MPMField &, const int *index);
 
