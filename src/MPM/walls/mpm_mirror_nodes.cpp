@@ -572,8 +572,6 @@ std::function<double(const double *)> MPMBoxFace::distance(const Domain &box) co
   };
 }
 
-static constexpr double FILLED = 0.4;    // share of the volume in reach of the node in front
-
 MPMContactDistance MPMBoxFace::contact_of(const MPMField &field, double x) const
 {
   if (!cut) {
