@@ -3,7 +3,8 @@
 # General Public License, version 2; see the file LICENSE.
 #
 # Builds as tools/build.sh does and runs tests:
-#   tools/test.sh                    all but the long ones: a quarter of an hour on two cores
+#   tools/test.sh                    all but the long ones, compiled with less optimization in a folder of their own,
+#                                    build/quick
 #   tools/test.sh all                everything: the long tests with sanitizers, many random inputs, and some mutants; all
 #                                    instruction sets; label smoke with the oldest supported LAMMPS, with 64-bit atom IDs
 #   tools/test.sh room heat pore     all tests of these folders of unittest
@@ -18,6 +19,11 @@ set -u
 . "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 # whatever fails before the tests can be counted is one failure
 trap '[ -n "${counted:-}" ] || echo "0 passed, 1 failed"' EXIT
+
+quick_build() {
+  build=$build/quick
+  MPM_CMAKE="-D MPM_QUICK=on ${MPM_CMAKE:-}"
+}
 
 oldest=
 old_tree=lammps-20250204-bigbig
@@ -35,6 +41,7 @@ case ${1:-} in
     rooms=$(python3 "$repo/tools/changed_rooms.py" "${2:-main}") || exit 1
     say "rooms: ${rooms//|/ }"
     set -- -L "^($rooms)\$" -LE '^long$'
+    quick_build
     ;;
   mutants)
     shift
@@ -47,9 +54,9 @@ case ${1:-} in
     ;;
   "")
     set -- -LE '^long$'
-    # cases of other tests that take long are left out, too.  MPM_CMAKE="-D MPM_QUICK=on" compiles the package in less
-    # time, with less optimization and for the baseline and the best instruction set of this machine only
+    # cases of other tests that take long are left out, too
     export MPM_QUICK=1
+    quick_build
     ;;
 esac
 

@@ -5,6 +5,7 @@
    main() of all tests, with one or more MPI processes.  Process 0 reports;
    the others report failures only.  Any failure makes all processes fail.
    -v: show the output of LAMMPS
+   --file=NAME: only the tests of this source, where the program has those of several
 ------------------------------------------------------------------------- */
 
 #include <mpi.h>
@@ -60,6 +61,23 @@ class ReportSeconds : public ::testing::EmptyTestEventListener {
   }
 };
 
+/** A filter with all tests of the source with this name. */
+static std::string tests_of(const char *source)
+{
+  std::string filter;
+  const ::testing::UnitTest &all = *::testing::UnitTest::GetInstance();
+  for (int i = 0; i < all.total_test_suite_count(); i++) {
+    const ::testing::TestSuite &suite = *all.GetTestSuite(i);
+    for (int k = 0; k < suite.total_test_count(); k++) {
+      const ::testing::TestInfo &test = *suite.GetTestInfo(k);
+      const char *slash = strrchr(test.file(), '/');
+      if (strcmp(slash ? slash + 1 : test.file(), source) == 0)
+        filter += std::string(suite.name()) + "." + test.name() + ":";
+    }
+  }
+  return filter;
+}
+
 int main(int argc, char **argv)
 {
   MPI_Init(&argc, &argv);
@@ -68,7 +86,10 @@ int main(int argc, char **argv)
 
   ::testing::InitGoogleMock(&argc, argv);
   for (int i = 1; i < argc; i++)
-    if (strcmp(argv[i], "-v") == 0) verbose = true;
+    if (strcmp(argv[i], "-v") == 0)
+      verbose = true;
+    else if (strncmp(argv[i], "--file=", 7) == 0 && ::testing::GTEST_FLAG(filter) == "*")
+      ::testing::GTEST_FLAG(filter) = tests_of(argv[i] + 7);
 
   int nprocs;
   MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
