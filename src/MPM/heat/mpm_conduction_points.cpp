@@ -15,7 +15,6 @@
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "error.h"
-#include "field/mpm_conductivity.h"
 #include "field/mpm_cpdi.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"

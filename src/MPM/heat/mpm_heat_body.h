@@ -179,7 +179,7 @@ class MPMHeatThin {
             const double *into, double area);
   /** Called after a check: returns true once, if thin bodies make up much of the area of an entry.
    *  Collective. */
-  bool tell(MPI_Comm, Found &);
+  bool report(MPI_Comm, Found &);
 
  private:
   int steps = 0;

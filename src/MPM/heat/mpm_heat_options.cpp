@@ -8,7 +8,7 @@
 
 #include "heat/mpm_heat_flow.h"
 
-#include "base/mpm_steps_or_auto.h"
+#include "base/mpm_options.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;

@@ -44,7 +44,6 @@
 #include "pore/mpm_pore.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
@@ -447,7 +446,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
   if (motion) surface.share_area(nodes);
 }
 
-void MPMPore::take_off()
+void MPMPore::separate_water()
 {
   if (surface.any()) {
     surface.find_push(nodes, of_flow);
@@ -467,7 +466,7 @@ void MPMPore::take_off()
       motion->begin_point(i, here);
     }
   });
-  motion->take_off();
+  motion->separate();
 }
 
 /** The surface force int N p n dA = int (p grad N + N grad p) dV, where the first term is the force

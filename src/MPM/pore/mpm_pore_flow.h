@@ -131,7 +131,7 @@ class MPMPoreFlow : protected Pointers {
   /** Formulation u-v-p, before the solve: takes the mass of the water off nodes. */
   void separate_inertia()
   {
-    for (auto *field : wet) field->take_off();
+    for (auto *field : wet) field->separate_water();
   }
   /** When the velocities of a step are known, where that moves points, too. */
   void take_motion(MPMField &);
