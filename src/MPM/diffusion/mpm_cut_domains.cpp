@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_passes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,17 +19,15 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double NEAR =
-    1.0e-6;    // of the end of a domain, in cells: a side there does not divide it
-static constexpr double MOST =
-    0.499;    // half of a domain, in cells: at most one side along an axis divides it
+// of the end of a domain, in cells: a side there does not divide it
+static constexpr double NEAR = 1.0e-6;
+// half of a domain, in cells: at most one side along an axis divides it
+static constexpr double MOST = 0.499;
 
 int MPMCutDomains::dim() const
 {
   return field.lattice.dim;
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** The functions in the middle of a part, in cells from the origin. False if this rank does not
  *  have all nodes. */
@@ -69,8 +68,6 @@ bool MPMCutDomains::make_whole(int point, const MPMPointMap::Run &run, Part &par
   return set_nodes(middle, run.slot, part);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMCutDomains::find(const std::function<bool(const MPMPointMap::Run &)> &wanted)
 {
   const Lattice &lattice = field.lattice;
@@ -79,42 +76,40 @@ void MPMCutDomains::find(const std::function<bool(const MPMPointMap::Run &)> &wa
   const double cell = 2.0 * lattice.h;
   parts.clear();
   is_cut.assign(field.atom->nmax, 0);
-  for (const auto &run : field.map->runs) {
-    if (!wanted(run)) continue;
-    for (int i = run.first; i < run.last; i++) {
-      const double *const x = frame.places()[i];
-      const double volume = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(x[0]),
-                   half = std::min(MOST, 0.5 * std::pow(volume, 1.0 / dim) / cell);
-      double middle[3][2], length[3][2];    // of the pieces along an axis
-      int pieces[3] = {1, 1, 1};
-      for (int d = 0; d < dim; d++) {
-        const double at = (x[d] - lattice.origin[d]) / cell, side = std::round(at);
-        middle[d][0] = at;
-        length[d][0] = 1.0;
-        if (std::fabs(side - at) > half - NEAR) continue;
-        pieces[d] = 2;
-        for (int k = 0; k < 2; k++) {
-          const double end = k ? at + half : at - half;
-          middle[d][k] = 0.5 * (side + end);
-          length[d][k] = 0.5 * std::fabs(end - side) / half;
-        }
-        is_cut[i] = 1;
+  each_point(field, [&](const auto &run, int i) {
+    if (!wanted(run)) return;
+    const double *const x = frame.places()[i];
+    const double volume = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(x[0]),
+                 half = std::min(MOST, 0.5 * std::pow(volume, 1.0 / dim) / cell);
+    double middle[3][2], length[3][2];    // of the pieces along an axis
+    int pieces[3] = {1, 1, 1};
+    for (int d = 0; d < dim; d++) {
+      const double at = (x[d] - lattice.origin[d]) / cell, side = std::round(at);
+      middle[d][0] = at;
+      length[d][0] = 1.0;
+      if (std::fabs(side - at) > half - NEAR) continue;
+      pieces[d] = 2;
+      for (int k = 0; k < 2; k++) {
+        const double end = k ? at + half : at - half;
+        middle[d][k] = 0.5 * (side + end);
+        length[d][k] = 0.5 * std::fabs(end - side) / half;
       }
-      if (!is_cut[i]) continue;
-      int piece[3];
-      for (piece[0] = 0; piece[0] < pieces[0]; piece[0]++)
-        for (piece[1] = 0; piece[1] < pieces[1]; piece[1]++)
-          for (piece[2] = 0; piece[2] < pieces[2]; piece[2]++) {
-            Part part = {i, 1.0, 1.0, {{0.0}, {0.0}, {1.0}}, {}, {}};
-            double place[3];
-            for (int d = 0; d < dim; d++) {
-              part.volume *= length[d][piece[d]];
-              place[d] = middle[d][piece[d]];
-            }
-            if (set_nodes(place, run.slot, part)) parts.push_back(part);
-          }
+      is_cut[i] = 1;
     }
-  }
+    if (!is_cut[i]) return;
+    int piece[3];
+    for (piece[0] = 0; piece[0] < pieces[0]; piece[0]++)
+      for (piece[1] = 0; piece[1] < pieces[1]; piece[1]++)
+        for (piece[2] = 0; piece[2] < pieces[2]; piece[2]++) {
+          Part part = {i, 1.0, 1.0, {{0.0}, {0.0}, {1.0}}, {}, {}};
+          double place[3];
+          for (int d = 0; d < dim; d++) {
+            part.volume *= length[d][piece[d]];
+            place[d] = middle[d][piece[d]];
+          }
+          if (set_nodes(place, run.slot, part)) parts.push_back(part);
+        }
+  });
 }
 
 void MPMCutDomains::gradient(const Part &part, const std::vector<double> &values, double g[3]) const

@@ -58,16 +58,6 @@ double MPMNodeProfile::inverse(const std::vector<double> &list, double value) co
   return -range + (above - list.begin() - 1 + part) / STEPS;
 }
 
-double MPMNodeProfile::depth(double volume_by_area) const
-{
-  return inverse(ratios, volume_by_area);
-}
-
-double MPMNodeProfile::depth_of_volume(double volume) const
-{
-  return inverse(volumes, volume);
-}
-
 /** Of a list between its depths, place: of the depth in it. */
 double MPMNodeProfile::at(const std::vector<double> &list, double place)
 {
@@ -75,11 +65,6 @@ double MPMNodeProfile::at(const std::vector<double> &list, double place)
   const int k = (int) place;
   if (k + 1 >= (int) list.size()) return list.back();
   return list[k] + (place - k) * (list[k + 1] - list[k]);
-}
-
-double MPMNodeProfile::volume(double depth) const
-{
-  return at(volumes, (depth + range) * STEPS);
 }
 
 double MPMNodeProfile::mean_depth(double depth) const

@@ -25,12 +25,12 @@ class MPMNodeProfile {
 
   /** Volume of a node, as a share of the volume of a cell, at this depth in the body; the depth is
    *  negative outside. */
-  double volume(double depth) const;
+  double volume(double depth) const { return at(volumes, (depth + range) * STEPS); }
   /** Depth from the ratio of volume to area (of the body and of its surface at the node, in
    *  cells). */
-  double depth(double volume_by_area) const;
+  double depth(double volume_by_area) const { return inverse(ratios, volume_by_area); }
   /** Depth from the volume. */
-  double depth_of_volume(double volume) const;
+  double depth_of_volume(double volume) const { return inverse(volumes, volume); }
   /** Mean depth below the surface of the part of the body within the function of a node at this
    *  depth. */
   double mean_depth(double depth) const;

@@ -8,16 +8,15 @@
 
 #include "diffusion/mpm_node_scalar.h"
 
+#include "atom.h"
+#include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
-#include "field/mpm_passes.h"
 
 #include <algorithm>
 #include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/* ---------------------------------------------------------------------- */
 
 void MPMNodeScalar::init(bool with_slopes, bool with_volumes)
 {
@@ -58,12 +57,35 @@ int *MPMNodeScalar::box_of(const MPMPointMap::ActiveBlock &block)
   return boxes[&block - field.map->active.data()].data();
 }
 
+/** Calls use(run, first, n) for all batches of points that have a part, with their stencil, and
+ *  with the values of nodes from[k] in tiles[k + 1]. What use() adds to tiles[0] goes to the nodes
+ *  to (null: nothing), without the sum over ranks. */
+template <class Use>
+void MPMNodeScalar::pass(SlopeKind kind, std::initializer_list<std::vector<double> *> from,
+                         std::vector<double> *to, const Use &use)
+{
+  for (auto *nodes : from) field.nodes.complete(nodes->data(), 1, 1);
+  if (to) to->assign(field.grid.nnodes(), 0.0);
+  each_block(field, [&](const auto &block) {
+    const int *const box = box_of(block);
+    if (box[0] > box[3]) return;
+    const int *const slot = field.grid.blocks[block.slot].slot;
+    auto *tile = tiles;
+    for (auto *nodes : from) kernels.load((++tile)->data(), nodes->data(), slot, box);
+    visit(block, kind, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
+      prepare();
+      use(run, first, n);
+      return true;
+    });
+    if (to) kernels.flush(tiles[0].data(), to->data(), slot, box);
+  });
+  for (std::size_t k = 1; k <= from.size(); k++) std::fill(tiles[k].begin(), tiles[k].end(), 0.0);
+}
+
 void MPMNodeScalar::sum(std::vector<double> &nodes) const
 {
   field.nodes.sum(nodes.data(), 1, 0, 1);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
 {
@@ -78,10 +100,10 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
   double *const of_value = tiles[0].data(), *const of_capacity = tiles[1].data(),
                 *const of_volume = tiles[2].data();
   boxes.resize(field.map->active.size());
-  for (auto &block : field.map->active) {
+  const auto kind = slopes ? DISTANCE_SLOPES : NO_SLOPES;
+  each_block(field, [&](const auto &block) {
     int *const box = box_of(block);
     reset_box(box);
-    const auto kind = slopes ? DISTANCE_SLOPES : NO_SLOPES;
     visit(block, kind, box, [&](const auto &run, int first, int n, const auto &prepare) {
       auto &at = points.at;
       at = {points.row[0], 4, points.row[0] + 3, 4, points.capacity};
@@ -97,12 +119,12 @@ void MPMNodeScalar::points_to_nodes(const Fill &fill, bool keeps)
       if (volumes) kernels.add_values(stencil, points.volume, of_volume);
       return true;
     });
-    if (box[0] > box[3]) continue;
+    if (box[0] > box[3]) return;
     const int *const slot = field.grid.blocks[block.slot].slot;
     kernels.flush(of_value, value.data(), slot, box);
     kernels.flush(of_capacity, capacity.data(), slot, box);
     if (volumes) kernels.flush(of_volume, volume.data(), slot, box);
-  }
+  });
   if (is_level) return;
   sum_nodes();
   if (keeps) keep();
@@ -116,63 +138,22 @@ void MPMNodeScalar::sum_nodes()
   kernels.divide(value.data(), capacity.data(), value.size());
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMNodeScalar::add_terms(int terms, const GiveValues &capacities, std::vector<double> &u)
 {
   first_term = u;
   std::vector<double> &mapped = rate;    // has nothing yet that is needed
   double values[BATCH], of_points[BATCH + SPARE_ROWS];
-  double *const tile = tiles[0].data(), *const from = tiles[1].data();
   for (int term = 2; term <= terms; term++) {
-    field.nodes.complete(u.data(), 1, 1);
-    std::fill(mapped.begin(), mapped.end(), 0.0);
-    for (const auto &block : field.map->active) {
-      if (box_of(block)[0] > box_of(block)[3]) continue;
-      const int *const slot = field.grid.blocks[block.slot].slot;
-      kernels.load(from, u.data(), slot, box_of(block));
-      visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
-        prepare();
-        kernels.get_values(stencil, from, of_points);
-        capacities(run, first, n, values);
-        for (int p = 0; p < n; p++) values[p] *= of_points[p];
-        kernels.add_values(stencil, values, tile);
-        return true;
-      });
-      kernels.flush(tile, mapped.data(), slot, box_of(block));
-    }
+    pass(NO_SLOPES, {&u}, &mapped, [&](const auto &run, int first, int n) {
+      kernels.get_values(stencil, tiles[1].data(), of_points);
+      capacities(run, first, n, values);
+      for (int p = 0; p < n; p++) values[p] *= of_points[p];
+      kernels.add_values(stencil, values, tiles[0].data());
+    });
     sum(mapped);
     for (std::size_t k = 0; k < u.size(); k++)
       if (capacity[k] > 0.0) u[k] += first_term[k] - mapped[k] / capacity[k];
   }
-  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
-}
-
-/* ---------------------------------------------------------------------- */
-
-template <class F>
-void MPMNodeScalar::find_rates_by(const F &give, const std::function<void()> &more)
-{
-  std::fill(rate.begin(), rate.end(), 0.0);
-  field.nodes.complete(value.data(), 1, 1);
-  double q[BATCH + SPARE_ROWS][4];
-  double *const tile = tiles[0].data(), *const from = tiles[1].data();
-  for (const auto &block : field.map->active) {
-    if (box_of(block)[0] > box_of(block)[3]) continue;
-    const int *const slot = field.grid.blocks[block.slot].slot;
-    kernels.load(from, value.data(), slot, box_of(block));
-    visit(block, GRADIENT_SLOPES, nullptr,
-          [&](const auto &run, int first, int n, const auto &prepare) {
-            prepare();
-            kernels.get(stencil, from, q[0]);
-            give(run, first, n, q);
-            return true;
-          });
-    kernels.flush(tile, rate.data(), slot, box_of(block));
-  }
-  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
-  if (more) more();
-  if (!is_level) sum_rates();
 }
 
 void MPMNodeScalar::sum_rates()
@@ -183,48 +164,39 @@ void MPMNodeScalar::sum_rates()
 
 void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void()> &more)
 {
-  find_rates_by(
-      [&](const auto &run, int first, int n, Rows q) {
-        conduct(run, first, n, q);
-        kernels.add(stencil, q[0], tiles[0].data());
-      },
-      more);
+  double q[BATCH + SPARE_ROWS][4];
+  pass(GRADIENT_SLOPES, {&value}, &rate, [&](const auto &run, int first, int n) {
+    kernels.get(stencil, tiles[1].data(), q[0]);
+    conduct(run, first, n, q);
+    kernels.add(stencil, q[0], tiles[0].data());
+  });
+  if (more) more();
+  if (!is_level) sum_rates();
 }
 
 void MPMNodeScalar::find_rates_along(const Factors &find)
 {
   static constexpr double NONE = 0.0;
-  double factors[BATCH];
-  find_rates_by(
-      [&](const auto &run, int first, int n, Rows q) {
-        find(run, first, n, q, factors);
-        kernels.add_times(stencil, {q[0], 4, &NONE, 0, factors}, tiles[0].data());
-      },
-      nullptr);
+  double q[BATCH + SPARE_ROWS][4], factors[BATCH];
+  pass(GRADIENT_SLOPES, {&value}, &rate, [&](const auto &run, int first, int n) {
+    kernels.get(stencil, tiles[1].data(), q[0]);
+    find(run, first, n, q, factors);
+    kernels.add_times(stencil, {q[0], 4, &NONE, 0, factors}, tiles[0].data());
+  });
+  if (!is_level) sum_rates();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMNodeScalar::add_rows(const Conduct &bound)
 {
-  std::fill(rate.begin(), rate.end(), 0.0);
   double q[BATCH + SPARE_ROWS][4];
-  double *const tile = tiles[0].data();
-  for (const auto &block : field.map->active) {
-    if (box_of(block)[0] > box_of(block)[3]) continue;
-    visit(block, ABSOLUTE_SLOPES, nullptr,
-          [&](const auto &run, int first, int n, const auto &prepare) {
-            prepare();
-            bound(run, first, n, q);
-            for (int p = 0; p < n; p++) {
-              for (int d = 0; d < 3; d++) q[p][d] *= 2.0 / field.lattice.h;
-              q[p][3] = 0.0;
-            }
-            kernels.add(stencil, q[0], tile);
-            return true;
-          });
-    kernels.flush(tile, rate.data(), field.grid.blocks[block.slot].slot, box_of(block));
-  }
+  pass(ABSOLUTE_SLOPES, {}, &rate, [&](const auto &run, int first, int n) {
+    bound(run, first, n, q);
+    for (int p = 0; p < n; p++) {
+      for (int d = 0; d < 3; d++) q[p][d] *= 2.0 / field.lattice.h;
+      q[p][3] = 0.0;
+    }
+    kernels.add(stencil, q[0], tiles[0].data());
+  });
 }
 
 double MPMNodeScalar::greatest_row()
@@ -240,107 +212,58 @@ double MPMNodeScalar::greatest_row()
   return most;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMNodeScalar::nodes_to_points(const Take &take, bool changes)
 {
-  field.nodes.complete(value.data(), 1, 1);
-  if (changes) field.nodes.complete(before.data(), 1, 1);
   double q[BATCH + SPARE_ROWS][4], old[BATCH + SPARE_ROWS];
-  double *const now = tiles[1].data(), *const then = tiles[2].data();
-  for (const auto &block : field.map->active) {
-    if (box_of(block)[0] > box_of(block)[3]) continue;
-    const int *const slot = field.grid.blocks[block.slot].slot;
-    kernels.load(now, value.data(), slot, box_of(block));
-    if (changes) kernels.load(then, before.data(), slot, box_of(block));
-    visit(block, moments ? FIT_SLOPES : GRADIENT_SLOPES, nullptr,
-          [&](const auto &run, int first, int n, const auto &prepare) {
-            prepare();
-            kernels.get(stencil, now, q[0]);
-            if (changes) kernels.get_values(stencil, then, old);
-            take(run, first, n, q, changes ? old : nullptr);
-            return true;
-          });
-  }
-  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
-  std::fill(tiles[2].begin(), tiles[2].end(), 0.0);
+  const auto kind = moments ? FIT_SLOPES : GRADIENT_SLOPES;
+  const auto use = [&](const auto &run, int first, int n) {
+    kernels.get(stencil, tiles[1].data(), q[0]);
+    if (changes) kernels.get_values(stencil, tiles[2].data(), old);
+    take(run, first, n, q, changes ? old : nullptr);
+  };
+  if (changes)
+    pass(kind, {&value, &before}, nullptr, use);
+  else
+    pass(kind, {&value}, nullptr, use);
 }
 
 void MPMNodeScalar::values_to_points(const TakeValues &take)
 {
-  field.nodes.complete(value.data(), 1, 1);
   double values[BATCH + SPARE_ROWS];
-  double *const tile = tiles[1].data();
-  for (const auto &block : field.map->active) {
-    if (box_of(block)[0] > box_of(block)[3]) continue;
-    kernels.load(tile, value.data(), field.grid.blocks[block.slot].slot, box_of(block));
-    visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
-      prepare();
-      kernels.get_values(stencil, tile, values);
-      take(run, first, n, values);
-      return true;
-    });
-  }
-  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+  pass(NO_SLOPES, {&value}, nullptr, [&](const auto &run, int first, int n) {
+    kernels.get_values(stencil, tiles[1].data(), values);
+    take(run, first, n, values);
+  });
 }
 
-void MPMNodeScalar::values_to_points_and_back(const Exchange &exchange, std::vector<double> &nodes)
+void MPMNodeScalar::values_to_points_and_back(const GiveValues &exchange,
+                                              std::vector<double> &nodes)
 {
-  field.nodes.complete(value.data(), 1, 1);
-  nodes.assign(field.grid.nnodes(), 0.0);
   double values[BATCH + SPARE_ROWS];
-  double *const tile = tiles[0].data(), *const from = tiles[1].data();
-  for (const auto &block : field.map->active) {
-    if (box_of(block)[0] > box_of(block)[3]) continue;
-    const int *const slot = field.grid.blocks[block.slot].slot;
-    kernels.load(from, value.data(), slot, box_of(block));
-    visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
-      prepare();
-      kernels.get_values(stencil, from, values);
-      exchange(run, first, n, values);
-      kernels.add_values(stencil, values, tile);
-      return true;
-    });
-    kernels.flush(tile, nodes.data(), slot, box_of(block));
-  }
+  pass(NO_SLOPES, {&value}, &nodes, [&](const auto &run, int first, int n) {
+    kernels.get_values(stencil, tiles[1].data(), values);
+    exchange(run, first, n, values);
+    kernels.add_values(stencil, values, tiles[0].data());
+  });
   sum(nodes);
-  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
 }
 
 void MPMNodeScalar::gradients_to_points(const Conduct &take)
 {
-  field.nodes.complete(value.data(), 1, 1);
   double q[BATCH + SPARE_ROWS][4];
-  double *const tile = tiles[1].data();
-  for (const auto &block : field.map->active) {
-    if (box_of(block)[0] > box_of(block)[3]) continue;
-    kernels.load(tile, value.data(), field.grid.blocks[block.slot].slot, box_of(block));
-    visit(block, GRADIENT_SLOPES, nullptr,
-          [&](const auto &run, int first, int n, const auto &prepare) {
-            prepare();
-            kernels.get(stencil, tile, q[0]);
-            take(run, first, n, q);
-            return true;
-          });
-  }
-  std::fill(tiles[1].begin(), tiles[1].end(), 0.0);
+  pass(GRADIENT_SLOPES, {&value}, nullptr, [&](const auto &run, int first, int n) {
+    kernels.get(stencil, tiles[1].data(), q[0]);
+    take(run, first, n, q);
+  });
 }
 
 void MPMNodeScalar::add_up(const GiveValues &give, std::vector<double> &nodes)
 {
-  nodes.assign(field.grid.nnodes(), 0.0);
   double values[BATCH];
-  double *const tile = tiles[0].data();
-  for (const auto &block : field.map->active) {
-    if (box_of(block)[0] > box_of(block)[3]) continue;
-    visit(block, NO_SLOPES, nullptr, [&](const auto &run, int first, int n, const auto &prepare) {
-      prepare();
-      give(run, first, n, values);
-      kernels.add_values(stencil, values, tile);
-      return true;
-    });
-    kernels.flush(tile, nodes.data(), field.grid.blocks[block.slot].slot, box_of(block));
-  }
+  pass(NO_SLOPES, {}, &nodes, [&](const auto &run, int first, int n) {
+    give(run, first, n, values);
+    kernels.add_values(stencil, values, tiles[0].data());
+  });
   sum(nodes);
 }
 
@@ -351,4 +274,48 @@ double MPMNodeScalar::memory_usage() const
        {&capacity, &volume, &value, &before, &rate, &first_term, &tiles[0], &tiles[1], &tiles[2]})
     bytes += list->capacity() * sizeof(double);
   return bytes;
+}
+
+void LAMMPS_NS::activate_blocks_around(MPMField &field,
+                                       const std::function<bool(const int *)> &wanted)
+{
+  Grid &grid = field.grid;
+  const bool space = field.lattice.dim == 3;
+  const std::size_t nblocks = grid.blocks.size();
+  for (std::size_t ib = 0; ib < nblocks; ib++) {
+    const int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
+    if (wanted && !wanted(b)) continue;
+    for (int k = 0; k < (space ? 27 : 9); k++) {
+      const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1, b[2] + k / 9 - space};
+      grid.activate(next);
+    }
+  }
+}
+
+double LAMMPS_NS::steepest_function(const MPMField &field)
+{
+  const MPMStencil stencil(field);
+  constexpr int SAMPLES = 4096;
+  double steepest = 0.0;
+  for (int k = 0; k < SAMPLES; k++) {
+    int node;
+    double w[4], slope[4], sum = 0.0;
+    const int n = stencil.weights((k + 1.0e-3) / SAMPLES, node, w, slope);
+    for (int j = 0; j < n; j++)
+      if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
+    steepest = std::max(steepest, sum);
+  }
+  return steepest;
+}
+
+std::vector<signed char> LAMMPS_NS::present_materials(const MPMField &field, MPI_Comm world)
+{
+  std::vector<signed char> mine(field.materials.size(), 0), all(mine.size());
+  for (int i = 0; i < field.atom->nlocal; i++) {
+    const auto *const material = field.is_point(i) ? field.material_of(i) : nullptr;
+    for (std::size_t k = 0; k < mine.size() && material; k++)
+      if (field.materials[k] == material) mine[k] = 1;
+  }
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
+  return all;
 }

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <functional>
+#include <initializer_list>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -41,8 +42,8 @@ class MPMNodeScalar {
     double row[MPM_NS::BATCH][4];    ///< [n][4] gradient g_p x y z, if there is one, and value
     double capacity[MPM_NS::BATCH];
     double volume[MPM_NS::BATCH];    ///< needed if volumes of nodes are wanted
-    MPM_NS::ScalarSource
-        at;    ///< place of gradients, values, and capacities: row and capacity, unless set
+    /** Place of gradients, values, and capacities: row and capacity, unless set. */
+    MPM_NS::ScalarSource at;
   };
   /** [n][4] gradient x y z, or g_p in nodes_to_points(), and value at points. */
   using Rows = double (*)[4];
@@ -83,7 +84,7 @@ class MPMNodeScalar {
   void sum_nodes();
   void keep() { before = value; }
   /** Gives capacities C_p, or other values, of the points of a run that takes part in
-   *  points_to_nodes(). */
+   *  points_to_nodes(), [n]. */
   using GiveValues =
       std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
   /** Extends u by terms of a series, as XPIC and FMPM do for velocities, see mpm_stages.cpp.
@@ -100,23 +101,16 @@ class MPMNodeScalar {
   void sum_rates();
   /** Bound of the eigenvalues of the negative rates on this rank, from the rows of their matrix
    *  [1/time]; not with domains. bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of
-   *  a linear flux. add_rows() and greatest_row() are called one after the other; for a level, sums
-   *  are exchanged in between. */
-  void add_rows(const Conduct &bound);    // stores the rows in rate
+   *  a linear flux. add_rows() stores the rows in rate, and greatest_row() is called after it; for
+   *  a level, sums are exchanged in between. */
+  void add_rows(const Conduct &bound);
   double greatest_row();
-  double greatest_rate(const Conduct &bound)
-  {
-    add_rows(bound);
-    return greatest_row();
-  }
   /** Transfers values from nodes to points. changes: pass the values of before, too. */
   void nodes_to_points(const Take &, bool changes);
   void values_to_points(const TakeValues &);
-  /** In: nodal values interpolated to points; out: contributions of points to the sums of
-   *  add_up(). */
-  using Exchange = std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
-  /** values_to_points() and add_up() in one pass. */
-  void values_to_points_and_back(const Exchange &, std::vector<double> &nodes);
+  /** values_to_points() and add_up() in one pass. In: nodal values interpolated to points; out:
+   *  contributions of points to the sums of add_up(). */
+  void values_to_points_and_back(const GiveValues &, std::vector<double> &nodes);
   /** Interpolates gradients and values to points. */
   void gradients_to_points(const Conduct &);
   /** Finds sum_p q_p N_ip of values q_p of points, for runs that take part. */
@@ -137,14 +131,22 @@ class MPMNodeScalar {
    *  points, of walls and contact, may come between the calls of a step. */
   std::vector<std::array<int, 6>> boxes;
 
-  /** Finds rates by give(run, first, n, q), which adds to a tile the contributions of points with
-   *  these gradients and values. */
-  template <class F> void find_rates_by(const F &give, const std::function<void()> &more);
   template <class F>
   void visit(const MPMPointMap::ActiveBlock &, MPM_NS::SlopeKind, int *box, const F &);
+  template <class Use>
+  void pass(MPM_NS::SlopeKind, std::initializer_list<std::vector<double> *> from,
+            std::vector<double> *to, const Use &);
   void sum(std::vector<double> &nodes) const;
   int *box_of(const MPMPointMap::ActiveBlock &);
 };
+
+/** Activates the blocks around those blocks (their coordinates) that are wanted, or around all:
+ *  ranks need the nodes around those that their points reach. */
+void activate_blocks_around(MPMField &, const std::function<bool(const int *)> &wanted = nullptr);
+/** Largest sum of (dN/dx)^2/N over the nodes of a point along an axis, x in node spacings. */
+double steepest_function(const MPMField &);
+/** [materials of the field] Has any rank points of it? Collective. */
+std::vector<signed char> present_materials(const MPMField &, MPI_Comm);
 
 /** Raises most to the greatest of itself and a[p]/b[p] of n points, b > 0. Does not divide where
  *  most is not exceeded. */

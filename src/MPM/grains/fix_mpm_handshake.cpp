@@ -14,39 +14,35 @@
 
    with a weight w that falls linearly from 1 (atoms only) to 0 (points only). Each atom and point
    keeps the weight of the place where it was when it got it, so that the masses w m are constant.
-   Mass and volume of points are scaled once. With e_i half of the energies of the pairs of atom i,
-   the force of the weighted energy is
+   With e_i half of the energies of the pairs of atom i, the force of the weighted energy is
 
      G_i = sum_j (w_i + w_j)/2 f_ij = w_i f_i + g_i,   g_i = sum_j (w_j - w_i)/2 f_ij,
 
-   where g_i, the stress of the atoms times the gradient of w, is what balances the missing stress of
-   the points; the sum of all G_i is zero exactly.
+   where g_i, the stress of the atoms times the gradient of w, is what balances the missing stress
+   of the points; the sum of all G_i is zero exactly.
 
-   Instead of by Lagrange multipliers, atoms and points are tied at the nodes, with the shape
-   functions N of the points. A node has the masses and forces
+   Atoms and points are tied at the nodes, with the shape functions N of the points. A node has the
+   masses and forces
 
      m_a = sum_i N w_i m_i,  f_a = sum_i N G_i;  m_c, f_c: what fix mpm has of the points,
 
-   and the velocities u_a = sum_i N m_i v_i / sum_i N m_i, and u_c likewise, with *full* masses: those
-   with the weights in them would be velocities at two different places, the centers of mass of what
-   is in the cells around the node. Both get the acceleration of a common momentum equation and lose
-   their difference as in an inelastic collision:
+   and the velocities u_a = sum_i N m_i v_i / sum_i N m_i, and u_c likewise, with *full* masses:
+   those with the weights in them would be velocities at two different places. Both get the
+   acceleration of a common momentum equation and lose their difference as in an inelastic
+   collision:
 
      a = (f_a + f_c)/(m_a + m_c),  d = u_a - U_c
      points: v_p += sum N [dt a + d m_a/(m_a + m_c)],
      atoms:  v_i += dt f_i/m_i + sum N [dt a - dt (sum_i N w_i f_i)/m_a - d m_c/(m_a + m_c)].
 
-   U_c is what points and nodes make of the velocities with which points move, sum N u_c. With
-   FLIP these are not v_p but, for a wave number k, smaller by a factor 1 - (k h)^2/4. It is the
-   displacements of atoms and points that must agree; with u_c in place of U_c, the stress would do
-   more work on one side of the zone than on the other, and a pulse lose this part of its energy.
+   U_c is what points and nodes make of the velocities with which points move, sum N u_c. With FLIP
+   these are not v_p but, for a wave number k, smaller by a factor 1 - (k h)^2/4. It is the
+   displacements of atoms and points that must agree.
 
    So only the part of their motion that nodes can represent is changed, thermal motion is not, and
-   forces on single atoms are those of the full crystal, which are zero where it is strained
-   uniformly. The sum of w m v over atoms and points changes by the forces from outside only, to
-   round-off. Atoms with w = 0 complete the neighborhood of the others: they move with v.
-
-   Damping acts on v_i - sum N u_a. The momentum that it takes from atoms is given to the nodes.
+   forces on single atoms are those of the full crystal. The sum of w m v over atoms and points
+   changes by the forces from outside only, to round-off. Atoms with w = 0 complete the neighborhood
+   of the others: they move with v. Damping acts on v_i - sum N u_a; nodes get the momentum.
 
    Points have the velocity of the middle of the step, atoms that of the end. The velocity of atoms
    before the step, v_i - dt f_i/(2 m_i), is what it was before the last half of fix nve, and the
@@ -61,8 +57,8 @@
 #include "comm.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
-#include "field/mpm_stencil.h"
 #include "force.h"
 #include "math_extra.h"
 #include "modify.h"
@@ -79,21 +75,18 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 // lanes of a node: with full masses momentum and mass of the atoms, and of the points; with weights
-// mass and force of the atoms, and of the forces the part without the gradient of the weights;
-// the number of atoms and points that need the other kind at the node; and later what is for the atoms
+// mass and force of the atoms, and of the forces the part without the gradient of the weights; the
+// number of atoms and points that need the other kind at the node; and later what is for the atoms
 
 enum { ATOMS = 0, POINTS = 4, FORCE = 8, MASS = 11, PLAIN = 12, PRESENCE = 15, NREAL = 16 };
 enum { CHANGE = 0, VELOCITY = 4 };
 
-// what the masses of atoms and points in the zone may differ by before there is a warning: at the ends of
-// a zone of one node spacing, they need not be in the same place
+// what the masses of atoms and points in the zone may differ by before there is a warning: at the
+// ends of a zone of one node spacing, they need not be in the same place
 
 static constexpr double MASS_DIFFERENCE = 0.3;
 
-/* ----------------------------------------------------------------------
-   fix ID atoms mpm/handshake FIELD zone AXIS ONE ZERO ... damp RATE
-------------------------------------------------------------------------- */
-
+/** fix ID atoms mpm/handshake FIELD zone AXIS ONE ZERO ... damp RATE. */
 Options MPMHandshakeOptions::declare()
 {
   using namespace option;
@@ -151,7 +144,8 @@ FixMPMHandshake::FixMPMHandshake(LAMMPS *lmp, int narg, char **arg) : FixMPMStat
   vector_atom = weight;
 }
 
-/** Points get back what they share with atoms, so that another handshake starts from full masses. */
+/** Points get back what they share with atoms, so that another handshake starts from full
+ *  masses. */
 FixMPMHandshake::~FixMPMHandshake()
 {
   for (int i = 0; i < atom->nlocal; i++) {
@@ -160,8 +154,6 @@ FixMPMHandshake::~FixMPMHandshake()
     atom->vfrac[i] /= weight[i];
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMHandshake::refuse(bool broken, const std::string &why) const
 {
@@ -206,18 +198,15 @@ void FixMPMHandshake::init()
   neighbor->add_request(this, NeighConst::REQ_FULL);
 }
 
-/* ----------------------------------------------------------------------
-   Weights act on forces between two atoms, so that the force on each must be a sum of these, central
-   and opposite. Those of EAM are: with the slopes F'_i of the embedding energies
-
-     f_ij = -(F'_i rho_j' + F'_j rho_i' + phi') r_ij/r_ij.
-
-   The force of sum_i w_i e_i has w_i F'_i in place of (w_i + w_j)/2 F'_i: the same where F' is
-   uniform, and what F' and w differ by from atom to atom is odd in r_ij, and cancels in the crystal up
-   to third differences. Styles for accelerators keep F' elsewhere. Forces between three atoms have no
-   single f_ij.
-------------------------------------------------------------------------- */
-
+/** Weights act on forces between two atoms, so that the force on each must be a sum of these,
+ *  central and opposite. Those of EAM are: with the slopes F'_i of the embedding energies
+ *
+ *    f_ij = -(F'_i rho_j' + F'_j rho_i' + phi') r_ij/r_ij.
+ *
+ *  The force of sum_i w_i e_i has w_i F'_i in place of (w_i + w_j)/2 F'_i: the same where F' is
+ *  uniform, and what F' and w differ by from atom to atom is odd in r_ij, and cancels in the
+ *  crystal up to third differences. Styles for accelerators keep F' elsewhere. Forces between three
+ *  atoms have no single f_ij. */
 void FixMPMHandshake::check_pair()
 {
   static const char *const embedded[] = {"eam",           "eam/alloy",     "eam/fs",     "eam/he",
@@ -237,13 +226,11 @@ void FixMPMHandshake::check_pair()
   }
 }
 
-/* ----------------------------------------------------------------------
-   PairEAM::single() returns the pair energy and a share of the embedding energy of its first atom, and
-   in LAMMPS of 2025 and 2026 the derivative of the former takes the sum of both: the force over the
-   distance is too large by share/r^2. Since forces are symmetric, two atoms with different shares show
-   whether this is so; the share alone is what is left at distances far beyond the cutoff.
-------------------------------------------------------------------------- */
-
+/** PairEAM::single() returns the pair energy and a share of the embedding energy of its first atom,
+ *  and in LAMMPS of 2025 and 2026 the derivative of the former takes the sum of both: the force
+ *  over the distance is too large by share/r^2. Since forces are symmetric, two atoms with
+ *  different shares show whether this is so; the share alone is what is left at distances far
+ *  beyond the cutoff. */
 double FixMPMHandshake::Embedded::share(int i, int type) const
 {
   const double far = 1.0e4 * pair->cutsq[type][type];
@@ -366,8 +353,6 @@ void FixMPMHandshake::weigh()
         id, all.atoms / all.volume, all.points / all.volume);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMHandshake::check_weights()
 {
   // atoms must go as far beyond each zone as forces reach, and be moved by fix nve
@@ -408,8 +393,6 @@ void FixMPMHandshake::check_weights()
           id, pads[k], zones[k].zero, k + 1, need);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMHandshake::setup_pre_neighbor()
 {
   weigh();
@@ -421,39 +404,21 @@ void FixMPMHandshake::post_neighbor()
   comm->forward_comm(this);    // weights of ghosts
 }
 
-/* ----------------------------------------------------------------------
-   blocks that atoms reach before the next update: by then they move half a skin
-------------------------------------------------------------------------- */
-
+/** Blocks that atoms reach before the next update: by then they move half a skin. */
 void FixMPMHandshake::extend_topology(MPMField &which)
 {
   if (&which != field) return;
   Grid &grid = field->grid;
-  const auto &lattice = grid.lattice;
-  const double drift = MIN(1.0, 0.5 * neighbor->skin / lattice.h);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (role[i] != COUPLED) continue;
-    int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, b[3];
-    for (int d = 0; d < lattice.dim; d++) {
-      const double t = (atom->x[i][d] - lattice.origin[d]) / lattice.h;
-      int first;
-      double w[4];
-      MPMStencil(*field).weights(t - drift, first, w);
-      lo[d] = first >> grid.shift_bits;
-      const int n = MPMStencil(*field).weights(t + drift, first, w);
-      hi[d] = (first + n - 1) >> grid.shift_bits;
-    }
-    for (b[0] = lo[0]; b[0] <= hi[0]; b[0]++)
-      for (b[1] = lo[1]; b[1] <= hi[1]; b[1]++)
-        for (b[2] = lo[2]; b[2] <= hi[2]; b[2]++) grid.activate(b);
-  }
+  const double drift = MIN(1.0, 0.5 * neighbor->skin / grid.lattice.h);
+  for (int i = 0; i < atom->nlocal; i++)
+    if (role[i] == COUPLED)
+      blocks_around(*field, atom->x[i], drift, 0, [&](const int *b) {
+        grid.activate(b);
+      });
 }
 
-/* ----------------------------------------------------------------------
-   forces by the gradient of the weight, as soon as those of the pair style are there: EAM knows the
-   slopes of embedding energies for the present positions only
-------------------------------------------------------------------------- */
-
+/** Forces by the gradient of the weight, as soon as those of the pair style are there: EAM knows
+ *  the slopes of embedding energies for the present positions only. */
 void FixMPMHandshake::setup(int /*vflag*/)
 {
   check_embedding();
@@ -527,10 +492,7 @@ double FixMPMHandshake::kinetic_energy() const
   return 0.5 * force->mvv2e * sum;
 }
 
-/* ----------------------------------------------------------------------
-   after the momentum equation of the points
-------------------------------------------------------------------------- */
-
+/** After the momentum equation of the points. */
 void FixMPMHandshake::act(double dt, Stage stage)
 {
   if (stage != STEP) return;
@@ -543,8 +505,6 @@ void FixMPMHandshake::act(double dt, Stage stage)
   move_atoms(dt);
   energy.lost += work_of_pushes(dt, 0.5 * dt) - kinetic_energy();
 }
-
-/* ---------------------------------------------------------------------- */
 
 template <class Function> void FixMPMHandshake::Reach::each_node(std::size_t k, const Function &f)
 {
@@ -623,10 +583,7 @@ void FixMPMHandshake::map_members(double dt)
   }
 }
 
-/* ----------------------------------------------------------------------
-   damp the motion of the atoms relative to the nodes, which get the momentum
-------------------------------------------------------------------------- */
-
+/** Damp the motion of the atoms relative to the nodes, which get the momentum. */
 void FixMPMHandshake::damp(double dt)
 {
   const std::size_t nnodes = field->grid.nnodes();
@@ -658,10 +615,7 @@ void FixMPMHandshake::damp(double dt)
     for (int d = 0; d < 3; d++) reach.sums[NREAL * n + FORCE + d] -= inverse * taken[4 * n + d];
 }
 
-/* ----------------------------------------------------------------------
-   momentum with full masses of the velocity with which points move, [node][4]
-------------------------------------------------------------------------- */
-
+/** Momentum with full masses of the velocity with which points move, [node][4]. */
 std::vector<double> FixMPMHandshake::smooth_points()
 {
   field->grid.copy_aliases(reach.sums.data(), NREAL);
@@ -680,10 +634,7 @@ std::vector<double> FixMPMHandshake::smooth_points()
   return p;
 }
 
-/* ----------------------------------------------------------------------
-   one velocity for atoms and points at each node
-------------------------------------------------------------------------- */
-
+/** One velocity for atoms and points at each node. */
 void FixMPMHandshake::tie(double dt)
 {
   Grid &grid = field->grid;
@@ -747,15 +698,12 @@ void FixMPMHandshake::move_atoms(double dt)
   }
 }
 
-/* ----------------------------------------------------------------------
-   output: energy of the fine motion that damping took; force of the atoms on the points, and energy
-   that atoms and points have lost where their velocities are tied, so that
-
-     weighted energy of the atoms + energy of the points + scalar + 4th value
-
-   changes only by what the integrators of both leave.
-------------------------------------------------------------------------- */
-
+/** Output: energy of the fine motion that damping took; force of the atoms on the points, and
+ *  energy that atoms and points have lost where their velocities are tied, so that
+ *
+ *    weighted energy of the atoms + energy of the points + scalar + 4th value
+ *
+ *  changes only by what the integrators of both leave. */
 double FixMPMHandshake::compute_scalar()
 {
   double all;
@@ -778,8 +726,6 @@ double FixMPMHandshake::memory_usage()
       (double) (reach.sums.capacity() + reach.shares.capacity() + pushes.capacity()) +
       sizeof(int) * (double) (reach.nodes.capacity() + members.capacity());
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMHandshake::grow_arrays(int nmax)
 {

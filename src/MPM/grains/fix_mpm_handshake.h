@@ -42,8 +42,8 @@ struct MPMHandshakeOptions {
   Zone next = {Zone::X, 0.0, 0.0};    // the zone that is being read
 };
 
-/** Zones where atoms and material points describe the same material. Each has a share of its energy and
- *  mass, and both move with one velocity at the nodes of a field. */
+/** Zones where atoms and material points describe the same material. Each has a share of its energy
+ *  and mass, and both move with one velocity at the nodes of a field. */
 class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHandshakeOptions {
  public:
   FixMPMHandshake(class LAMMPS *, int, char **);

@@ -7,22 +7,22 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The field is the mixture: its velocity U is the flux of volume of fluid and grains together, which
-   is what a field of nearly constant volume has without sources,
+   The field is the mixture: its velocity U is the flux of volume of fluid and grains together,
+   which is what a field of nearly constant volume has without sources,
 
      div [eps u + (1 - eps) v] = 0,    U - v = eps (u - v)
 
-   for the velocity u of the fluid in the pores, v of the grains, and the porosity eps. So laws of drag
-   are written for the superficial slip U - v, with the force K (U - v) that remains when the fluid does
-   not accelerate and does not weigh: that of the gradient of pressure along a bed included ("model B",
-   Z.Y. Zhou, S.B. Kuang, K.W. Chu, A.B. Yu, J. Fluid Mech. 661 (2010) 482).
+   for the velocity u of the fluid in the pores, v of the grains, and the porosity eps. So laws of
+   drag are written for the superficial slip U - v, with the force K (U - v) that remains when the
+   fluid does not accelerate and does not weigh: that of the gradient of pressure along a bed
+   included ("model B", Z.Y. Zhou, S.B. Kuang, K.W. Chu, A.B. Yu, J. Fluid Mech. 661 (2010) 482).
 
    To this comes the force of Archimedes in fluid that accelerates,
 
      F = K (U - v) + rho V (dU/dt - g).
 
-   dU/dt follows from the internal forces, which nodes know, and from the forces -F of the grains, whose
-   share phi of the volume is that of all fluid, since the field has the mass of full space:
+   dU/dt follows from the internal forces, which nodes know, and from the forces -F of the grains,
+   whose share phi of the volume is that of all fluid, since the field has the mass of full space:
    dU/dt = A - phi F/(rho V) with the acceleration A before these, so that
 
      F = [K (U - v) + rho V (A - g)]/(1 + phi),
@@ -31,11 +31,12 @@
    nodes around it, in proportion to N_i m_i: opposite to round-off, and the same change of velocity
    for nodes that are nearly empty.
 
-   In 2d all is per unit of depth, and a grain is a disc of that depth, with the volume pi d^2/4: for
-   Archimedes, and for porosity. Its drag per volume is that of spheres of its diameter, so that a bed has the
-   pressure drop of one of spheres with its porosity. That is not far from what discs, which are cylinders
-   across the flow, have: for square arrays in slow flow (A.S. Sangani, A. Acrivos, Int. J. Multiphase Flow
-   8 (1982) 193) 1.12, 1.00, 1.00, 1.13 of Ergun's law at the shares of volume 0.2, 0.3, 0.4, 0.5.
+   In 2d all is per unit of depth, and a grain is a disc of that depth, with the volume pi d^2/4:
+   for Archimedes, and for porosity. Its drag per volume is that of spheres of its diameter, so that
+   a bed has the pressure drop of one of spheres with its porosity. That is not far from what discs,
+   which are cylinders across the flow, have: for square arrays in slow flow (A.S. Sangani, A.
+   Acrivos, Int. J. Multiphase Flow 8 (1982) 193) 1.12, 1.00, 1.00, 1.13 of Ergun's law at the
+   shares of volume 0.2, 0.3, 0.4, 0.5.
 ------------------------------------------------------------------------- */
 
 #include "grains/fix_mpm_immersed.h"
@@ -45,11 +46,11 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
 #include "field/mpm_halo.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_point_map.h"
-#include "field/mpm_stencil.h"
 #include "fix_gravity.h"
 #include "force.h"
 #include "math_const.h"
@@ -70,10 +71,7 @@ enum { INNER = 1, OUTER };         // nodes, see has_fluid_around()
 // relative difference of gravity that counts as none, and buoyancy over weight that does, as in air
 static constexpr double SAME_GRAVITY = 0.01, NO_BUOYANCY = 0.01;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/immersed FIELD DENSITY VISCOSITY keyword values ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/immersed FIELD DENSITY VISCOSITY keyword values ... */
 Options MPMImmersedOptions::declare(int dim)
 {
   using namespace option;
@@ -121,10 +119,7 @@ FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   dynamic_group_allow = 1;
 }
 
-/* ----------------------------------------------------------------------
-   a missing fluid is found here; with a field, it calls init_action()
-------------------------------------------------------------------------- */
-
+/** Stops with an error if the fluid is missing. With a field, that calls init_action(). */
 void FixMPMImmersed::init()
 {
   field = MPMField::find(lmp, field_id);
@@ -145,10 +140,7 @@ void FixMPMImmersed::init()
   check_grains(driver, flow->spacing());
 }
 
-/* ----------------------------------------------------------------------
-   what runs on this field and these grains
-------------------------------------------------------------------------- */
-
+/** What runs on this field and these grains. */
 void FixMPMImmersed::init_action()
 {
   FixMPMImmersed::init();
@@ -228,7 +220,8 @@ void FixMPMImmersed::check_grains(const Fix *driver, double h)
 
 namespace {
 
-/** A fix gravity with variables has no vector before its first forces. It does not tell whether it has some. */
+/** A fix gravity with variables has no vector before its first forces. It does not tell whether it
+ *  has some. */
 struct Gravity : public FixGravity {
   static bool is_constant(const Fix *fix)
   {
@@ -239,8 +232,8 @@ struct Gravity : public FixGravity {
 
 }    // namespace
 
-/** Grains that fix gravity pulls down need the same gravity for their buoyancy, which is easily forgotten. One that varies cannot be that
- *  of the keyword, which is constant. */
+/** Grains that fix gravity pulls down need the same gravity for their buoyancy, which is easily
+ *  forgotten. One that varies cannot be that of the keyword, which is constant. */
 void FixMPMImmersed::setup(int)
 {
   if (told_of_weight) return;
@@ -291,17 +284,13 @@ bool FixMPMImmersed::is_grain(int i) const
   return (atom->mask[i] & groupbit) && atom->radius[i] > 0.0 && atom->vfrac[i] == 0.0;
 }
 
-/** 2d: per unit of depth. */
 double FixMPMImmersed::volume(int i) const
 {
   const double r = atom->radius[i];
   return domain->dimension == 3 ? 4.0 / 3.0 * MY_PI * r * r * r : MY_PI * r * r;
 }
 
-/* ----------------------------------------------------------------------
-   blocks around the grains of this rank, and when they need others
-------------------------------------------------------------------------- */
-
+/** Blocks around the grains of this rank, and when they need others. */
 void FixMPMImmersed::couple_topology()
 {
   if (!field) return;
@@ -323,21 +312,15 @@ void FixMPMImmersed::extend_topology(MPMField &extended)
   if (&extended != field) return;
   auto &grid = field->grid;
   for (const int i : immersed) {
-    int lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, b[3];
-    for (int d = 0; d < field->lattice.dim; d++) {
-      double w[4];
-      const double t = (atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h;
-      if (!(fabs(t) < 4.0e6))
+    for (int d = 0; d < field->lattice.dim; d++)
+      if (!(fabs((atom->x[i][d] - grid.lattice.origin[d]) / grid.lattice.h) < 4.0e6))
         error->one(FLERR, Error::NOLASTLINE,
                    "Fix mpm/immersed {}: grain {} is far out of reach of the lattice", id,
                    atom->tag[i]);
-      const int n = MPMStencil(*field).weights(t, lo[d], w);
-      hi[d] = (lo[d] + n) >> grid.shift_bits;    // one more on each side: grains move
-      lo[d] = (lo[d] - 1) >> grid.shift_bits;
-    }
-    for (b[0] = lo[0]; b[0] <= hi[0]; b[0]++)
-      for (b[1] = lo[1]; b[1] <= hi[1]; b[1]++)
-        for (b[2] = lo[2]; b[2] <= hi[2]; b[2]++) grid.activate(b);
+    // one more node on each side: grains move
+    blocks_around(*field, atom->x[i], 0.0, 1, [&](const int *b) {
+      grid.activate(b);
+    });
   }
 }
 
@@ -346,16 +329,13 @@ void FixMPMImmersed::topology_changed(MPMField &changed)
   if (&changed == field) canonical = field->grid.canonical();
 }
 
-/* ----------------------------------------------------------------------
-   Share of space that grains take up around one of them, of the volume V = own, from the mapped share and its
-   first moment sum N r. Both mappings smooth it over a width s, s^2 = (p+1)/6 h^2 for splines of degree p,
-   so that at a distance x inside of the end of a bed is left the part A = Phi(x/s), the normal
-   distribution. Its logarithmic slope tells where that is: q = s |grad A|/A = Phi'/Phi falls from 0.8 at
-   the end to none inside, and A = 1 - 0.64 q^1.12 within 0.01. What the slope would be by chance, for
-   grains at random places, int |grad K|^2 V/phi with the kernel K of the width s, is no end: the integral is
-   (n/2)/(s^2 (4 pi s^2)^(n/2)) in n dimensions.
-------------------------------------------------------------------------- */
-
+/** Share of space that grains take up around one of them, of the volume V = own, from the mapped
+ *  share and its first moment sum N r. Both mappings smooth it over a width s, s^2 = (p+1)/6 h^2
+ *  for splines of degree p, so that at a distance x inside of the end of a bed is left the part A =
+ *  Phi(x/s), the normal distribution. Its logarithmic slope tells where that is: q = s |grad A|/A =
+ *  Phi'/Phi falls from 0.8 at the end to none inside, and A = 1 - 0.64 q^1.12 within 0.01. What the
+ *  slope would be by chance, for grains at random places, int |grad K|^2 V/phi with the kernel K of
+ *  the width s, is no end: the integral is (n/2)/(s^2 (4 pi s^2)^(n/2)) in n dimensions. */
 double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own, int order,
                                   double cell) const
 {
@@ -369,15 +349,12 @@ double FixMPMImmersed::end_of_bed(double solid, const double *moment, double own
   return solid / (1.0 - 0.64 * pow(std::min(q2, 2.0 / MY_PI), 0.56));
 }
 
-/* ----------------------------------------------------------------------
-   drag on a sphere / superficial slip, by the share of space that grains take up.
-   For a single sphere, L. Schiller, A. Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; for a bed, S. Ergun,
-   Chem. Eng. Prog. 48 (1952) 89; Ergun below the porosity 0.8 and C.Y. Wen, Y.H. Yu, Chem. Eng. Prog.
-   Symp. Ser. 62 (1966) 100 above: D. Gidaspow, Multiphase Flow and Fluidization (1994);
-   R. Di Felice, Int. J. Multiphase Flow 20 (1994) 153. Those that exclude the gradient of pressure
-   along the bed are divided by the porosity.
-------------------------------------------------------------------------- */
-
+/** Drag on a sphere / superficial slip, by the share of space that grains take up. For a single
+ *  sphere, L. Schiller, A. Naumann, Z. Ver. Dtsch. Ing. 77 (1935) 318; for a bed, S. Ergun, Chem.
+ *  Eng. Prog. 48 (1952) 89; Ergun below the porosity 0.8 and C.Y. Wen, Y.H. Yu, Chem. Eng. Prog.
+ *  Symp. Ser. 62 (1966) 100 above: D. Gidaspow, Multiphase Flow and Fluidization (1994); R. Di
+ *  Felice, Int. J. Multiphase Flow 20 (1994) 153. Those that exclude the gradient of pressure along
+ *  the bed are divided by the porosity. */
 double FixMPMImmersed::porosity(double solid) const
 {
   // densest packing of equal spheres, of equal discs
@@ -385,11 +362,8 @@ double FixMPMImmersed::porosity(double solid) const
   return std::max(least, 1.0 - solid);
 }
 
-/* ----------------------------------------------------------------------
-   drag / slip at the slip which is left at the end of the step: w = slip/(1 + slowing K(w)). Laws are
-   between K = a and K = b w: a line through two of their values, exact for that of Ergun
-------------------------------------------------------------------------- */
-
+/** Drag / slip at the slip which is left at the end of the step: w = slip/(1 + slowing K(w)). Laws
+ *  are between K = a and K = b w: a line through two of their values, exact for that of Ergun. */
 double FixMPMImmersed::drag_after_step(double diameter, double slip, double solid,
                                        double slowing) const
 {
@@ -407,12 +381,9 @@ double FixMPMImmersed::drag_after_step(double diameter, double slip, double soli
   return least + rise * (w - low);
 }
 
-/* ----------------------------------------------------------------------
-   Is there fluid on all sides of a node? If not, a wall may hold it, or the node next to it together
-   with its image. Walls act later, and what the momentum equation gives such nodes now is the
-   unbalanced pressure on the wall.
-------------------------------------------------------------------------- */
-
+/** Is there fluid on all sides of a node? If not, a wall may hold it, or the node next to it
+ *  together with its image. Walls act later, and what the momentum equation gives such nodes now is
+ *  the unbalanced pressure on the wall. */
 bool FixMPMImmersed::has_fluid_around(int64_t node) const
 {
   const auto &grid = field->grid;
@@ -437,10 +408,7 @@ bool FixMPMImmersed::has_fluid_around(int64_t node) const
   return all;
 }
 
-/* ----------------------------------------------------------------------
-   f(node, weight, numbers along the axes) for the nodes around a grain
-------------------------------------------------------------------------- */
-
+/** f(node, weight, numbers along the axes) for the nodes around a grain. */
 template <class F> void FixMPMImmersed::around(const Grain &g, const F &f) const
 {
   const auto loop = [&](const int *count) {
@@ -458,11 +426,8 @@ template <class F> void FixMPMImmersed::around(const Grain &g, const F &f) const
     loop(count_along);
 }
 
-/* ----------------------------------------------------------------------
-   grains with fluid around them, and the volume of these at the nodes. In half a cell above the surface, buoyancy
-   and drag fall to zero
-------------------------------------------------------------------------- */
-
+/** Grains with fluid around them, and the volume of these at the nodes. In half a cell above the
+ *  surface, buoyancy and drag fall to zero. */
 void FixMPMImmersed::find_grains(double dt)
 {
   grains.clear();
@@ -526,7 +491,8 @@ template <class F> void FixMPMImmersed::each_used_node(const F &f) const
     for (int n = 0; n < NODES_PER_BLOCK; n++) f((int64_t) slot * NODES_PER_BLOCK + n);
 }
 
-/** The velocity of the fluid is that after the momentum equation at inner nodes, elsewhere the old one with the mean gain. */
+/** The velocity of the fluid is that after the momentum equation at inner nodes, elsewhere the old
+ *  one with the mean gain. */
 bool FixMPMImmersed::find_fluid(Grain &g)
 {
   const double full = density * field->lattice.cell_volume();
@@ -588,10 +554,7 @@ void FixMPMImmersed::move_by_forces(Grain &g, double dt) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   the coefficient is that of the slip which is left at the end of the step
-------------------------------------------------------------------------- */
-
+/** The coefficient is that of the slip which is left at the end of the step. */
 void FixMPMImmersed::buoyancy_and_coefficient(Grain &g, double dt)
 {
   const double *const sum = sums.data();
@@ -634,10 +597,8 @@ void FixMPMImmersed::add_to_nodes(const Grain &g, int lane, const double *values
   });
 }
 
-/* ----------------------------------------------------------------------
-   the drag itself, with what the coefficients of all grains at the same nodes are now known to be
-------------------------------------------------------------------------- */
-
+/** The drag itself, with what the coefficients of all grains at the same nodes are now known to
+ *  be. */
 void FixMPMImmersed::drag(Grain &g, double dt)
 {
   double near[4] = {0.0, 0.0, 0.0, 0.0};    // of the velocity of the fluid, and rate of its slip
@@ -664,16 +625,12 @@ void FixMPMImmersed::sum_nodes(int lane, int nlane)
   field->nodes.halo->sum(sums.data(), NREAL, lane, nlane);
 }
 
-/* ----------------------------------------------------------------------
-   Impulses of this step. That of drag acts on the slip which it leaves: with one grain, by the
-   implicit Euler method; when grains share nodes, the sum of all coefficients at these is what their
-   fluid is taken to be slowed down with. That is at least what it is, so that the slip of no grain
-   changes its sign, however stiff; and it is exact when the motion is steady. The coefficient is that of
-   the slip which is left, too. Forces of the grain
-   count up to the time when it moves, so that a grain sinks with its terminal velocity
-   for any time step.
-------------------------------------------------------------------------- */
-
+/** Impulses of this step. That of drag acts on the slip which it leaves: with one grain, by the
+ *  implicit Euler method; when grains share nodes, the sum of all coefficients at these is what
+ *  their fluid is taken to be slowed down with. That is at least what it is, so that the slip of no
+ *  grain changes its sign, however stiff; and it is exact when the motion is steady. The
+ *  coefficient is that of the slip which is left, too. Forces of the grain count up to the time
+ *  when it moves, so that a grain sinks with its terminal velocity for any time step. */
 void FixMPMImmersed::act(double dt, Stage stage)
 {
   if (stage != STEP || !field) return;
@@ -702,10 +659,7 @@ void FixMPMImmersed::act(double dt, Stage stage)
   dt_last = dt;
 }
 
-/* ----------------------------------------------------------------------
-   number of grains with fluid around them; drag (1 to 3) and buoyancy (4 to 6) on all of them
-------------------------------------------------------------------------- */
-
+/** Number of grains with fluid around them; drag (1 to 3) and buoyancy (4 to 6) on all of them. */
 double FixMPMImmersed::compute_scalar()
 {
   bigint mine = count, all;

@@ -40,8 +40,8 @@ struct MPMImmersedOptions {
 };
 
 /** Drag and buoyancy between grains smaller than the node spacing and a fluid. The fluid is a field
- *  (fix mpm), with momentum exchange at the nodes around each grain, or an incompressible flow, which uses
- *  only the laws of this fix and exchanges momentum by itself (MPMFlowGrains). */
+ *  (fix mpm), with momentum exchange at the nodes around each grain, or an incompressible flow,
+ *  which uses only the laws of this fix and exchanges momentum by itself (MPMFlowGrains). */
 class FixMPMImmersed :
     public Fix,
     public MPMNodeAction,
@@ -68,17 +68,18 @@ class FixMPMImmersed :
 
   /** ID of the fix of the fluid. */
   const std::string &fluid() const { return field_id; }
-  double fluid_density() const { return density; }
   const double *acceleration_of_gravity() const { return gravity; }
   /** Do grains displace fluid? */
   bool displaces() const { return displace; }
   /** Is this local atom a grain in the fluid? */
   bool is_grain(int i) const;
   double volume(int i) const;    ///< in 2d per unit of depth
-  /** Number of steps for which forces still act on a grain before it moves. mass: of the grain; infinite: held. */
+  /** Number of steps for which forces still act on a grain before it moves. mass: of the grain;
+   *  infinite: held. */
   double steps_ahead(int i, double &mass) const;
-  /** Share of space that grains fill around a grain, corrected for the end of a bed. solid: mapped share at the grain;
-   *  moment: its first moment sum N r [node spacings]; own: volume of the grain; order: of the splines; cell: volume of a cell. */
+  /** Share of space that grains fill around a grain, corrected for the end of a bed. solid: mapped
+   *  share at the grain; moment: its first moment sum N r [node spacings]; own: volume of the
+   *  grain; order: of the splines; cell: volume of a cell. */
   double end_of_bed(double solid, const double *moment, double own, int order, double cell) const;
   /** Drag/slip [mass/time] at the slip w = slip/(1 + slowing K(w)) that remains after a step. */
   double drag_after_step(double diameter, double slip, double solid, double slowing) const;
@@ -117,8 +118,8 @@ class FixMPMImmersed :
   std::vector<char> inner;           // [node] result of has_fluid_around(); 0: not evaluated yet
   std::vector<char> used;            // [slot] does the block have sums?
   std::vector<int> slots;            // slots of these blocks
-  // [node][8] sums over the grains around a node: impulses of buoyancy [3] and coefficient, shared by the mass of fluid;
-  // impulses of drag [3] per mass of fluid; share of space of grains
+  // [node][8] sums over the grains around a node: impulses of buoyancy [3] and coefficient, shared
+  // by the mass of fluid; impulses of drag [3] per mass of fluid; share of space of grains
   std::vector<double> sums;
   double force_now[6] = {};    // impulses of drag [3] and buoyancy [3] on the grains of this rank
   int count = 0;

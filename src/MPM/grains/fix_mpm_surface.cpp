@@ -26,7 +26,9 @@
 #include "field/mpm_setup_checks.h"
 #include "force.h"
 #include "group.h"
+#include "input.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 
 #include <algorithm>
@@ -36,10 +38,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/surface keyword value ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/surface keyword value ... */
 Options MPMSurfaceOptions::declare()
 {
   using namespace option;
@@ -91,10 +90,8 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
   give_largest();
 }
 
-/* ----------------------------------------------------------------------
-   groups can be deleted, and their bit given to others: the name decides at the start of each run
-------------------------------------------------------------------------- */
-
+/** Groups can be deleted, and their bit given to others: the name decides at the start of each
+ *  run. */
 void FixMPMSurface::find_group(int iarg)
 {
   surface_group = group->find(group_id);
@@ -110,11 +107,8 @@ bool FixMPMSurface::keeps_group(int number) const
   return !group_id.empty() && group->find(group_id) == number;
 }
 
-/* ----------------------------------------------------------------------
-   Diameters that create_points or set gave would go without a word. Those that a restart file has are
-   of this fix: none, the largest, or that of the present volume
-------------------------------------------------------------------------- */
-
+/** Diameters that create_points or set gave would go without a word. Those that a restart file has
+ *  are of this fix: none, the largest, or that of the present volume. */
 void FixMPMSurface::warn_of_diameters() const
 {
   const auto differs = [](double a, double b) {
@@ -140,13 +134,6 @@ void FixMPMSurface::warn_of_diameters() const
                    "keyword scale",
                    id, all, largest);
 }
-
-int FixMPMSurface::setmask()
-{
-  return PRE_EXCHANGE | PRE_FORCE | POST_RUN;
-}
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMSurface::init()
 {
@@ -196,12 +183,9 @@ void FixMPMSurface::init()
                id);
 }
 
-/* ----------------------------------------------------------------------
-   Start of a run: as each time that lists are made, so that the step of a restart file, where they are,
-   has the same radii and lists in the run that goes on from it. This comes before fix mpm does what
-   the volume on the lattice needs
-------------------------------------------------------------------------- */
-
+/** Start of a run: as each time that lists are made, so that the step of a restart file, where they
+ *  are, has the same radii and lists in the run that goes on from it. This comes before fix mpm
+ *  does what the volume on the lattice needs. */
 void FixMPMSurface::setup_pre_exchange()
 {
   domain->pbc();    // reference positions of points are inside of the box
@@ -215,11 +199,8 @@ void FixMPMSurface::setup_pre_exchange()
   pre_exchange();
 }
 
-/* ----------------------------------------------------------------------
-   a run without set-up ("run pre no") begins with the largest radii, and lists that are not of the
-   surface it finds
-------------------------------------------------------------------------- */
-
+/** A run without set-up ("run pre no") begins with the largest radii, and lists that are not of the
+ *  surface it finds. */
 void FixMPMSurface::pre_force(int)
 {
   if (!known) {
@@ -229,10 +210,7 @@ void FixMPMSurface::pre_force(int)
   }
 }
 
-/* ----------------------------------------------------------------------
-   before ghosts and neighbor lists are made
-------------------------------------------------------------------------- */
-
+/** Before ghosts and neighbor lists are made. */
 void FixMPMSurface::pre_exchange()
 {
   // points may have left the nodes that were in their reach, or else there would be no new lists
@@ -247,11 +225,8 @@ bool FixMPMSurface::moves_atoms() const
       group->find(atom->firstgroupname) == surface_group;
 }
 
-/* ----------------------------------------------------------------------
-   The group is first in memory (atom_modify first), and a few points have left it or come to it. LAMMPS
-   would shift all atoms behind each of them by one place. Here the few change places
-------------------------------------------------------------------------- */
-
+/** The group is first in memory (atom_modify first), and a few points have left it or come to it.
+ *  LAMMPS would shift all atoms behind each of them by one place. Here the few change places. */
 void FixMPMSurface::keep_first()
 {
   const int bit = group->bitmask[surface_group], n = atom->nlocal;
@@ -274,8 +249,6 @@ void FixMPMSurface::keep_first()
   }
   for (auto *field : MPMField::all(lmp)) field->map->valid = false;
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool FixMPMSurface::has_radius(int i) const
 {
@@ -310,12 +283,10 @@ void FixMPMSurface::give_radius(int i, bool surface, double radius)
   atom->mask[i] = surface ? atom->mask[i] | bit : atom->mask[i] & ~bit;
 }
 
-/* ----------------------------------------------------------------------
-   The volume at the nodes over that of a cell, interpolated, goes from 1 inside of a body to 0
-   outside. To map and to interpolate smooths a step by functions with the variance (order + 1)/12
-   of the B-spline each: at the depth y it is close to the normal distribution with the sum of both.
-------------------------------------------------------------------------- */
-
+/** The volume at the nodes over that of a cell, interpolated, goes from 1 inside of a body to 0
+ *  outside. To map and to interpolate smooths a step by functions with the variance (order + 1)/12
+ *  of the B-spline each: at the depth y it is close to the normal distribution with the sum of
+ *  both. */
 void FixMPMSurface::find_surface()
 {
   known = true;
@@ -333,10 +304,7 @@ void FixMPMSurface::find_surface()
   }
 }
 
-/* ----------------------------------------------------------------------
-   points at the surface
-------------------------------------------------------------------------- */
-
+/** Points at the surface. */
 double FixMPMSurface::compute_scalar()
 {
   double mine = 0.0, all;
@@ -345,13 +313,6 @@ double FixMPMSurface::compute_scalar()
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
-
-double FixMPMSurface::memory_usage()
-{
-  return FixMPMState::memory_usage() + share.capacity() * sizeof(double);
-}
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMSurface::grow_arrays(int nmax)
 {
@@ -368,4 +329,63 @@ int FixMPMSurface::pack_forward_comm(int n, int *list, double *buf, int, int *)
 void FixMPMSurface::unpack_forward_comm(int n, int first, double *buf)
 {
   for (int k = 0; k < n; k++) atom->radius[first + k] = buf[k];
+}
+
+/** Keyword lists: the settings of neighbor lists and communication that a run with grains needs to
+ *  be fast. They are LAMMPS's own commands, which the log shows. */
+void FixMPMSurface::set_lists(int iarg)
+{
+  if (group->find(grains_id) < 0)
+    error->all(FLERR, iarg, "Fix mpm/surface {} lists: group {} does not exist", id, grains_id);
+  if (force->pair_match("mpm/penalty", 0))
+    error->all(FLERR, iarg,
+               "Fix mpm/surface {} lists leaves out pairs of points, which pair style mpm/penalty "
+               "needs: give neighbor, neigh_modify and comm_modify instead",
+               id);
+  for (auto *other : modify->get_fix_by_style("^mpm/surface$")) {
+    const auto *surface = dynamic_cast<FixMPMSurface *>(other);
+    if (surface && surface != this && !surface->grains_id.empty())
+      error->all(FLERR, iarg,
+                 "Fix mpm/surface {} lists: fix {} has set the lists; use one fix mpm/surface for "
+                 "the points of both",
+                 id, surface->id);
+  }
+  if (group_id.empty()) group_id = id;
+
+  const auto command = [this](const std::string &text) {
+    input->one(text);
+  };
+  command(fmt::format("neighbor {:.17g} multi", neighbor->skin));
+  command("comm_modify vel yes mode multi");
+  const std::vector<int> types = types_of_points(iarg);
+  for (const int a : types)
+    for (const int b : types)
+      if (a <= b) command(fmt::format("neigh_modify exclude type {} {}", a, b));
+  command(fmt::format("group {} union {} {}", group_id, grains_id, group->names[igroup]));
+  command(fmt::format("atom_modify first {}", group_id));
+  command(fmt::format("neigh_modify include {}", group_id));
+  command(fmt::format("comm_modify group {}", group_id));
+}
+
+/** Types of the points of this fix, which grains must not have. */
+std::vector<int> FixMPMSurface::types_of_points(int iarg) const
+{
+  const int ntypes = atom->ntypes;
+  std::vector<int> mine(2 * (ntypes + 1), 0), all(mine.size()), types;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (has_radius(i))
+      mine[2 * atom->type[i]] = 1;
+    else if (atom->vfrac[i] == 0.0)
+      mine[2 * atom->type[i] + 1] = 1;
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_MAX, world);
+  for (int t = 1; t <= ntypes; t++) {
+    if (!all[2 * t]) continue;
+    if (all[2 * t + 1])
+      error->all(FLERR, iarg,
+                 "Fix mpm/surface {} lists: material points and other atoms have the type {}: give "
+                 "them different ones",
+                 id, t);
+    types.push_back(t);
+  }
+  return types;
 }

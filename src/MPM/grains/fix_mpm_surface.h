@@ -41,7 +41,10 @@ struct MPMSurfaceOptions {
 class FixMPMSurface : public FixMPMState, public MPMListedPoints, private MPMSurfaceOptions {
  public:
   FixMPMSurface(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override
+  {
+    return FixConst::PRE_EXCHANGE | FixConst::PRE_FORCE | FixConst::POST_RUN;
+  }
   void init() override;
   void setup_pre_exchange() override;
   void setup_pre_force(int flag) override { pre_force(flag); }
@@ -53,7 +56,10 @@ class FixMPMSurface : public FixMPMState, public MPMListedPoints, private MPMSur
   /** Does this fix decide which points are in this group (those with a radius)? */
   bool keeps_group(int group) const override;
 
-  double memory_usage() override;
+  double memory_usage() override
+  {
+    return FixMPMState::memory_usage() + share.capacity() * sizeof(double);
+  }
   void grow_arrays(int) override;
   int pack_forward_comm(int, int *, double *, int, int *) override;
   void unpack_forward_comm(int, int, double *) override;

@@ -16,23 +16,30 @@
 
 namespace MPM_NS {
 
-/** Drag on one sphere of many. In all laws the drag is K(w) times the superficial slip w (porosity times the difference
- *  of the velocities), and includes the force of the pressure gradient along a bed. Sources: see the page of fix
- *  mpm/immersed. */
+/** Mean of exp(-t) for t from 0 to x. */
+inline double mean_decay(double x)
+{
+  return x > 1.0e-8 ? -std::expm1(-x) / x : 1.0 - 0.5 * x;
+}
+
+/** Drag on one sphere of many. In all laws the drag is K(w) times the superficial slip w (porosity
+ *  times the difference of the velocities), and includes the force of the pressure gradient along a
+ *  bed. Sources: see the page of fix mpm/immersed. */
 struct SphereDrag {
   enum Law { NONE, STOKES, SCHILLER, ERGUN, GIDASPOW, DIFELICE };
 
   Law law;
   double density, viscosity;    ///< of the fluid; viscosity: pressure * time in units of mass
 
-  /** Coefficient of the quadratic term of the pressure gradient in a bed of packed spheres, by Ergun's law: per square of
-   *  the superficial velocity. */
+  /** Coefficient of the quadratic term of the pressure gradient in a bed of packed spheres, by
+   *  Ergun's law: per square of the superficial velocity. */
   static double bed_inertia(double density, double diameter, double porosity)
   {
     return INERTIAL * density * (1.0 - porosity) / (diameter * porosity * porosity * porosity);
   }
 
-  /** Factor for a sphere in a bed on the drag on a single sphere, in laws in which it does not depend on the slip. */
+  /** Factor for a sphere in a bed on the drag on a single sphere, in laws in which it does not
+   *  depend on the slip. */
   double hindrance(double porosity) const
   {
     return law == GIDASPOW && porosity >= 0.8 ? std::pow(porosity, -4.65) : 1.0;

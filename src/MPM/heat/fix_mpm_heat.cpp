@@ -24,7 +24,6 @@
 #include "variable.h"
 
 #include <algorithm>
-#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -65,8 +64,6 @@ int FixMPMHeat::setmask()
   return report | (options.grains ? POST_INTEGRATE | POST_FORCE | END_OF_STEP : 0) |
       (options.penalty ? (int) POST_FORCE : 0);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMHeat::init()
 {
@@ -135,11 +132,6 @@ void FixMPMHeat::find_rubbers()
                "give its pair_coeff one of these, or drop the keyword");
 }
 
-bool FixMPMHeat::conducts(const MPMField &field) const
-{
-  return flow.in(field).conducts();
-}
-
 void FixMPMHeat::give(const MPMField &field, std::size_t node, double heat, bool counts)
 {
   auto &given = flow.in(field).given;
@@ -178,10 +170,7 @@ void FixMPMHeat::warn_of_friction()
   }
 }
 
-/* ----------------------------------------------------------------------
-   forces of pair styles act in the next step, and so does the heat of their friction
-------------------------------------------------------------------------- */
-
+/** Forces of pair styles act in the next step, and so does the heat of their friction. */
 void FixMPMHeat::setup(int)
 {
   flow.clear_iterations();
@@ -279,11 +268,8 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
                   });
 }
 
-/* ----------------------------------------------------------------------
-   entries of compute mpm/energy. The heat of points is a sum over points, separate from the heat
-   that nodes were given
-------------------------------------------------------------------------- */
-
+/** Entries of compute mpm/energy. The heat of points is a sum over points, separate from the heat
+ *  that nodes were given. */
 std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
 {
   return {{"conducted heat", true},
@@ -311,8 +297,6 @@ double FixMPMHeat::energy_at_hand() const
   return heat;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMHeat::conduct()
 {
   if (flow.wait()) return;
@@ -321,11 +305,6 @@ void FixMPMHeat::conduct()
     if (options.grains && field->conducts()) grain_heat->give(*field);
   if (options.penalty) give_rubbing(flow.fields[0]->field.step_dt());
   flow.conduct();
-}
-
-double FixMPMHeat::compute_vector(int i)
-{
-  return flow.powers()[i];
 }
 
 double FixMPMHeat::memory_usage()

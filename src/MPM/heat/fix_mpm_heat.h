@@ -22,7 +22,6 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "heat/mpm_heat_flow.h"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -41,7 +40,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
   void setup(int) override;
   void post_run() override { flow.report(); }
   double compute_scalar() override { return flow.heat_came(); }
-  double compute_vector(int) override;
+  double compute_vector(int i) override { return flow.powers()[i]; }
   void write_restart(FILE *fp) override { flow.write_restart(fp); }
   void restart(char *buf) override { flow.restart(buf); }
   double memory_usage() override;
@@ -60,7 +59,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
   void account(double *values) const override;
   double energy_at_hand() const override;
 
-  bool conducts(const MPMField &) const override;
+  bool conducts(const MPMField &field) const override { return flow.in(field).conducts(); }
   void give(const MPMField &, std::size_t node, double heat, bool counts) override;
 
   /** Conduction in this field. */

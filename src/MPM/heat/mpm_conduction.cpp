@@ -7,89 +7,71 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   With the capacities C_p = m_p c_p and volumes V_p of points, and N_ip, grad N_ip where they are,
+   With the capacities C_p = m_p c_p and volumes V_p of points, their gradients g_p (not with the
+   transfers pic and xpic), and sources s_p,
 
      C_i = sum_p C_p N_ip,  T_i = sum_p C_p N_ip [T_p + g_p (x_i - x_p)]/C_i,
      C_i dT_i/dt = - sum_p V_p k_p (sum_j T_j grad N_jp) . grad N_ip + sum_p V_p s_p N_ip + faces,
-
-   with the gradient g_p of each point, except for the transfers pic and xpic, and sources s_p. Then points
-   get
 
      T_p = sum_i N_ip T_i                                                  (pic, affine)
      T_p = sum_i N_ip T_i + e (T_p - sum_i N_ip T_i of the start)          (relax)
      T_p = sum_i N_ip (T_i - T_i of the start + u_i)                       (xpic)
      g_p = D^-1 sum_i N_ip T_i (x_i - x_p),  D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T
 
-   with the terms u of MPMNodeScalar::add_terms() for the temperatures of nodes that would give points theirs
-   (XPIC, C.C. Hammerquist, J.A. Nairn, Comput. Methods Appl. Mech. Eng. 318 (2017) 724, where it is for
-   momentum). All transfers keep sum_p C_p T_p, because the sum of weights is one, and sum_i N_ip (x_i - x_p)
-   = 0.
+   with the terms u of MPMNodeScalar::add_terms() (XPIC, C.C. Hammerquist, J.A. Nairn, Comput.
+   Methods Appl. Mech. Eng. 318 (2017) 724). All transfers keep sum_p C_p T_p, because weights have
+   the sum one and sum_i N_ip (x_i - x_p) = 0. Without g_p, nodes at faces, whose points are all on
+   one side, would have the temperature of another place: an error of first order in the flow.
 
-   Without g_p, nodes at faces, whose points are all on one side, would have the temperature of another place:
-   an error of first order in the heat that flows. Each step smoothes temperatures, with pic as a conductivity
-   of the order of h^2/dt does, and with affine as one of the order of h^4 k^2/dt for a wave number k. This is
-   too much in many short steps: a bar with 20 cells that is heated from one end was 8 % too warm with steps
-   of 1/100 of the explicit limit. The part of the temperatures of points that nodes do not see decays by
-   conduction in about the time h^2 rho c/k in which heat crosses a cell. With relax, a share 1 - e of it goes
-   in a step, with e = exp(-R dt k/(rho c h^2)), so that this smoothing does not depend on the time step and
-   is of second order. e is that of the material that conducts least, because heat is kept only if e is the
-   same for all points. Nodes next to an interface have the temperature of the points with much capacity.
-   Others would be pulled to it at a rate that is not that of their conduction: with 100 times the capacity on
-   one side, 30 % more heat went through a layer of 3 cells. Therefore R is reduced by the ratio of the
-   capacities.
+   The part of the temperatures of points that nodes do not see decays by conduction in about the
+   time h^2 rho c/k. With relax a share 1 - e of it goes in a step, e = exp(-R dt k/(rho c h^2)), so
+   that the smoothing does not depend on the time step. e is that of the material that conducts
+   least, because heat is kept only if e is the same for all points. R is reduced by the ratio of
+   the capacities: points with little capacity next to an interface would otherwise be pulled to the
+   temperature of those with much at a rate that is not that of their conduction.
 
-   Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, and the matrix of
-   capacities one of C_p diag(N). The greatest eigenvalue of the sum is not above the greatest one of the
+   Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, and that of
+   capacities one of C_p diag(N). The greatest eigenvalue is not above the greatest one of the
    parts,
 
      V_p k_p/C_p max_d sum_i (dN_ip/dx_d)^2/N_ip,
 
-   as functions are products along the axes, for which the matrix sum_i grad N grad N^T/N is diagonal. The sum
-   is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones, in any dimension and wherever points
-   are; the explicit limit 2 over this is about 0.33 h^2 density c/k for the former. With a tensor k it is the
-   greatest eigenvalue that counts. A function of GIMP of a point with the half size s (in cells, at most 1/2)
-   has at most 2/s + 1/(1 - s), and with domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip = sum_c
-   g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N grad N^T/N <= sum_c g_c g_c^T/w_c.
+   as functions are products along the axes, for which sum_i grad N grad N^T/N is diagonal. The sum
+   is at most 6/h^2 for quadratic B-splines and 3.2/h^2 for cubic ones. With a tensor k its greatest
+   eigenvalue counts. A function of GIMP of a point with the half size s (in cells, at most 1/2) has
+   at most 2/s + 1/(1 - s), and with domains, N_ip = sum_c w_c N_i(x_c) over corners c, grad N_ip =
+   sum_c g_c N_i(x_c), and by Cauchy and Schwarz sum_i grad N grad N^T/N <= sum_c g_c g_c^T/w_c.
 
-   Linear functions and Bernstein polynomials have no such bound: a node that a point hardly reaches has next
-   to no capacity, while the gradient there is not small. For them the greatest rate is at most the greatest
-   sum of absolute values of a row of C^-1 K, which is not above
+   Linear functions and Bernstein polynomials have no such bound. For them the greatest rate is at
+   most the greatest sum of absolute values of a row of C^-1 K, which is not above
 
      sum_p V_p sum_d |dN_ip/dx_d| sum_e |k_de| (2/h)/C_i,
 
-   as sum_j |dN_jp/dx_d| is at most 2/h. Inside of a body this is 4 d k/(rho c h^2) in d dimensions. At its
-   surface, nodes with next to no capacity can have any rate, up to 1e16 times as much. To limit it, points
-   that reach such a node conduct less, by the factor that makes the sum of the node four times the usual one:
-   the matrix stays symmetric, and heat is kept.
+   4 d k/(rho c h^2) inside of a body in d dimensions. At its surface, nodes with next to no
+   capacity can have any rate. Points that reach such a node conduct less, by the factor that makes
+   the sum of the node four times the usual one: the matrix stays symmetric, and heat is kept.
 
-   Bernstein polynomials: a point whose domain is divided by a side of cells conducts with its parts in each
-   cell (mpm_cut_domains.cpp), by which the sums are integrals wherever points are. Parts with a node whose rate
-   is more than 1.4 times what is allowed conduct nothing, because a little conduction would make an
-   insulating layer at a surface. These nodes, and those with less than a quarter of their conduction left,
-   are idle: no heat comes in there, so that the body ends at the side of the cell.
+   Bernstein polynomials: a point whose domain is divided by a side of cells conducts with its parts
+   in each cell (mpm_cut_domains.cpp). Parts with a node whose rate is more than 1.4 times what is
+   allowed conduct nothing, because a little conduction would make an insulating layer at a surface.
+   These nodes, and those with less than a quarter of their conduction left, are idle: no heat comes
+   in there, so that the body ends at the side of the cell.
 
-   Melting. Where the conductivity jumps at the temperature of melting, partly molten points have that
-   temperature, and with it the conductivity of one phase. If that was not the phase that grows, the front was
-   up to 0.8 node spacings off. Heat flows along the gradient of the integral of k over the temperature, and
-   the mean of k over the temperatures around a point is its difference over a distance (V.R. Voller, C.R.
-   Swaminathan, Numer. Heat Transfer B 24 (1993) 161, at faces of cells). The temperatures are those of the
-   nodes, which have no plateau at a front. With a quarter of a node spacing on either side, results are the
-   same for all tables of a jump; with twice that, fronts are off by 0.1 cells more.
+   Melting. Where the conductivity jumps, heat flows along the gradient of the integral of k over
+   the temperature. The mean of k over the temperatures of nodes within a quarter of a node spacing
+   of a point is its difference over a distance (V.R. Voller, C.R. Swaminathan, Numer. Heat Transfer
+   B 24 (1993) 161, at faces of cells). Partly molten points alone would have the conductivity of
+   one phase, and the front would be up to 0.8 node spacings off.
 
-   Total frame. Nodes are places X of the reference configuration, where the conductivity is J F^-1 k F^-T and
-   the volume V_p/J: the same sums with V_p F^-1 k F^-T. Around an axis of symmetry, points are rings with
-   their whole volume and capacity; nothing flows around the axis, so that there is no other term.
-
-   Longer steps are made of stages (MPMSuperStep). The heat through each face goes through the same stages, so
-   that it is that of the points to round-off.
+   Total frame. Nodes are places X of the reference configuration, where the conductivity is J F^-1
+   k F^-T and the volume V_p/J: the same sums with V_p F^-1 k F^-T. Around an axis of symmetry,
+   points are rings with their whole volume and capacity.
 ------------------------------------------------------------------------- */
 
 #include "heat/mpm_conduction.h"
 
 #include "atom.h"
 #include "base/mpm_points.h"
-#include "comm.h"
-#include "error.h"
 #include "field/mpm_cpdi.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
@@ -107,16 +89,12 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
-
 MPMConduction::MPMConduction(LAMMPS *lmp, MPMField &field, const MPMHeatTransfer &transfer,
                              const MPMHeatCondition *conditions) :
     Pointers(lmp),
     field(field), faces(lmp, field, conditions), scalar(field), transfer(transfer), cuts(field)
 {
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMConduction::init(double sigma, bool surfaces, bool &warned_of_layers)
 {
@@ -133,46 +111,20 @@ void MPMConduction::init(double sigma, bool surfaces, bool &warned_of_layers)
   active = !thermals.empty();
   total = field.frame->is_total();
   steepest = 0.0;
-  if (field.options.shape == QUADRATIC || field.options.shape == CUBIC) {
-    const MPMStencil stencil(field);
-    constexpr int SAMPLES = 4096;
-    for (int k = 0; k < SAMPLES; k++) {
-      int node;
-      double w[4], slope[4], sum = 0.0;
-      const int n = stencil.weights((k + 1.0e-3) / SAMPLES, node, w, slope);
-      for (int j = 0; j < n; j++)
-        if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
-      steepest = std::max(steepest, sum / (field.lattice.h * field.lattice.h));
-    }
-  }
+  if (field.options.shape == QUADRATIC || field.options.shape == CUBIC)
+    steepest = steepest_function(field) / (field.lattice.h * field.lattice.h);
   conducted = 0.0;
   present.clear();
-  std::vector<signed char> mine(field.materials.size(), 0);
-  for (int i = 0; i < atom->nlocal; i++)
-    if (const auto *const fix = field.is_point(i) ? field.material_of(i) : nullptr)
-      mine[index_of(fix)] = 1;
-  keep_present(mine);
+  keep_present(present_materials(field, world));
   faces.init(sigma);
   wants_volumes = faces.any() || (surfaces && thermals.size() < field.materials.size());
   scalar.init(transfer.has_slopes(), wants_volumes);
 }
 
-std::size_t MPMConduction::index_of(const FixMPMMaterial *fix) const
+/** Updates what depends on the materials of which any rank has points. Materials of other fields,
+ *  and unused ones, change nothing. */
+void MPMConduction::keep_present(const std::vector<signed char> &all)
 {
-  return std::find(field.materials.begin(), field.materials.end(), fix) - field.materials.begin();
-}
-
-bool MPMConduction::is_present(const Thermal &t) const
-{
-  return present[index_of(t.fix)];
-}
-
-/** Updates what depends on the materials of which any rank has points; mine: those of this rank. Materials of
- *  other fields, and unused ones, change nothing. Collective. */
-void MPMConduction::keep_present(const std::vector<signed char> &mine)
-{
-  std::vector<signed char> all(mine.size());
-  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
   if (all == present) return;
   present = all;
   slowest = std::numeric_limits<double>::max();
@@ -204,12 +156,15 @@ void MPMConduction::find_points(bool may_rest)
 {
   if (thermals.empty()) return;
   int any = 0, all = 1;
-  std::vector<signed char> mine(field.materials.size(), 0);
-  for (const auto &run : field.map->runs) {
+  std::vector<signed char> mine(field.materials.size(), 0), here(mine.size());
+  each_point_batch(field, [&](const auto &run, int, int) {
     any |= thermal(run.material) != nullptr;
     if (run.material) mine[index_of(run.material)] = 1;
+  });
+  if (mine.size() > 1) {
+    MPI_Allreduce(mine.data(), here.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
+    keep_present(here);
   }
-  if (field.materials.size() > 1) keep_present(mine);
   if (any) field.jacobians.ask();
   if (all && may_rest) MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_BOR, world);
   active = all;
@@ -217,8 +172,6 @@ void MPMConduction::find_points(bool may_rest)
   temperature.clear();
   rate.clear();
 }
-
-/* ---------------------------------------------------------------------- */
 
 const MPMConduction::Thermal *MPMConduction::thermal(const FixMPMMaterial *fix) const
 {
@@ -268,21 +221,10 @@ double MPMConduction::volume_of(int i) const
   return atom->vfrac[i] * field.points->jacobian(i);
 }
 
-bool MPMConduction::looks_beyond_points() const
-{
-  return field.options.shape == BERNSTEIN;
-}
-
 void MPMConduction::extend_topology()
 {
   faces.extend_topology();
-  if (!looks_beyond_points() || !has_materials()) return;
-  const auto nblocks = (int) field.grid.blocks.size();
-  for (int ib = 0; ib < nblocks; ib++) {
-    const auto &block = field.grid.blocks[ib];
-    const int b[3] = {block.b[0], block.b[1], block.b[2]};
-    activate_blocks_around(field, b);
-  }
+  if (looks_beyond_points() && has_materials()) activate_blocks_around(field);
 }
 
 const std::vector<double> &MPMConduction::face_capacity()
@@ -294,8 +236,8 @@ const std::vector<double> &MPMConduction::face_capacity()
   return capacity_at_faces;
 }
 
-/** Calls loop(plain) with plain as a constant: loops over points then have neither branches nor calls for
- *  what is the same for all points. */
+/** Calls loop(plain) with plain as a constant: loops over points then have neither branches nor
+ *  calls for what is the same for all points. */
 template <class Loop> static void if_plain(bool plain, const Loop &loop)
 {
   if (plain)
@@ -311,10 +253,7 @@ template <int DIM> static void copy_rows(int n, const double *from, double *to)
     for (int d = 0; d < DIM; d++) to[DIM * p + d] = from[4 * p + d];
 }
 
-/* ----------------------------------------------------------------------
-   temperatures of the nodes
-------------------------------------------------------------------------- */
-
+/** Temperatures of the nodes. */
 double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
 {
   add_points(gradients, starts);
@@ -330,9 +269,9 @@ double MPMConduction::points_to_nodes(const MPMRows &gradients, bool starts)
   return most_by_rows;
 }
 
-/** Finds where material ends at faces. A last cell with a single layer of points conducts only along one
- *  combination of its nodes, that of the functions at the end of the layer. Heat with other weights, as at a
- *  face some way off, would stay in these nodes. */
+/** Finds where material ends at faces. A last cell with a single layer of points conducts only
+ *  along one combination of its nodes, that of the functions at the end of the layer. Heat with
+ *  other weights, as at a face some way off, would stay in these nodes. */
 void MPMConduction::find_ends()
 {
   static constexpr double REACH = 5.0;    // node spacings: the cell of a face and the next one
@@ -349,13 +288,12 @@ void MPMConduction::find_ends()
   ends.assign(3 * field.grid.nnodes(), 0.0);
   for (const auto &part : cuts.parts)
     if (faces.is_near(frame.places()[part.point], reach)) add(part);
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; thermal(run.material) && i < run.last; i++) {
-      MPMCutDomains::Part whole;
-      if (!cuts.is_cut[i] && faces.is_near(frame.places()[i], reach) &&
-          cuts.make_whole(i, run, whole))
-        add(whole);
-    }
+  each_point(field, [&](const auto &run, int i) {
+    MPMCutDomains::Part whole;
+    if (thermal(run.material) && !cuts.is_cut[i] && faces.is_near(frame.places()[i], reach) &&
+        cuts.make_whole(i, run, whole))
+      add(whole);
+  });
   field.nodes.sum(ends.data(), 3, 0, 3);
   field.nodes.complete(ends.data(), 3, 3);
 }
@@ -433,8 +371,8 @@ double MPMConduction::end_nodes()
   return simple ? fastest_point * steepest : fastest_point;
 }
 
-/** XPIC: before becomes the difference of the temperatures from those of the series, so that points get the
- *  new temperature less this difference. */
+/** XPIC: before becomes the difference of the temperatures from those of the series, so that points
+ *  get the new temperature less this difference. */
 void MPMConduction::find_unseen()
 {
   std::vector<double> &unseen = scalar.before;
@@ -450,8 +388,6 @@ void MPMConduction::find_unseen()
       unseen);
   for (std::size_t k = 0; k < unseen.size(); k++) unseen[k] = temperature[k] - unseen[k];
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Are fluxes along gradients, with one number for each material? */
 bool MPMConduction::is_plain() const
@@ -492,31 +428,6 @@ void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::R
   }
 }
 
-/** Factors that turn gradients of n points into fluxes times volumes. */
-void MPMConduction::conduct_plainly(const Thermal &t, int first, int n, double *factors) const
-{
-  const double *const V = volumes.data() + first;
-  for (int p = 0; p < n; p++) factors[p] = -t.all.conductivity * V[p];
-}
-
-void MPMConduction::find_changes()
-{
-  if (is_plain()) {
-    scalar.find_rates_along([&](const MPMPointMap::Run &run, int first, int n,
-                                const MPMNodeScalar::Rows, double *factors) {
-      conduct_plainly(*thermal(run.material), first, n, factors);
-    });
-    return;
-  }
-  scalar.find_rates(
-      [&](const MPMPointMap::Run &run, int first, int n, MPMNodeScalar::Rows q) {
-        conduct(*thermal(run.material), first, n, q);
-      },
-      [this]() {
-        conduct_parts();
-      });
-}
-
 /** Adds the conduction of points whose domains are in several cells. */
 void MPMConduction::conduct_parts()
 {
@@ -529,53 +440,46 @@ void MPMConduction::conduct_parts()
   }
 }
 
-/** Visits the terms of points. A node that a point sees from several corners of its domain counts once. */
+/** Visits the terms of points. A node that a point sees from several corners of its domain counts
+ *  once. */
 void MPMConduction::each_term(const MPMDiffusion::Term &use) const
 {
   const MPMStencil stencil(field);
   const int dim = field.lattice.dim;
   std::vector<int64_t> nodes;
   std::vector<double> gradients;
-  for (const auto &run : field.map->runs) {
-    const Thermal *const t = thermal(run.material);
-    for (int i = run.first; t && i < run.last; i++) {
-      if (cuts.any() && cuts.is_cut[i]) continue;
-      nodes.clear();
-      gradients.clear();
-      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        std::size_t k = nodes.size();
-        if (field.domains) k = std::find(nodes.begin(), nodes.end(), node.number) - nodes.begin();
-        if (k == nodes.size()) {
-          nodes.push_back(node.number);
-          gradients.resize(gradients.size() + dim, 0.0);
-        }
-        for (int d = 0; d < dim; d++) gradients[dim * k + d] += node.gradient[d];
-      });
-      double stiffness[9];
-      for (int column = 0; column < dim; column++) {
-        double q[1][4] = {};
-        q[0][column] = -1.0;
-        conduct(*t, i, 1, q);
-        for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
-      }
-      use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
+  const auto give = [&](const Thermal &t, int i, double times, Left left) {
+    double stiffness[9];
+    for (int column = 0; column < dim; column++) {
+      double q[1][4] = {};
+      q[0][column] = -times;
+      conduct(t, i, 1, q, left);
+      for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
     }
-  }
-  for (const auto &part : cuts.parts) {
+    use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
     nodes.clear();
     gradients.clear();
+  };
+  each_point(field, [&](const auto &run, int i) {
+    const Thermal *const t = thermal(run.material);
+    if (!t || (cuts.any() && cuts.is_cut[i])) return;
+    stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+      std::size_t k = nodes.size();
+      if (field.domains) k = std::find(nodes.begin(), nodes.end(), node.number) - nodes.begin();
+      if (k == nodes.size()) {
+        nodes.push_back(node.number);
+        gradients.resize(gradients.size() + dim, 0.0);
+      }
+      for (int d = 0; d < dim; d++) gradients[dim * k + d] += node.gradient[d];
+    });
+    give(*t, i, 1.0, AS_SHARES);
+  });
+  for (const auto &part : cuts.parts) {
     cuts.each_node(part, [&](int node, const double *slope) {
       nodes.push_back(node);
       gradients.insert(gradients.end(), slope, slope + dim);
     });
-    double stiffness[9];
-    for (int column = 0; column < dim; column++) {
-      double q[1][4] = {};
-      q[0][column] = -part.volume * part.share;
-      conduct(*thermal(field.material_of(part.point)), part.point, 1, q, ALL);
-      for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
-    }
-    use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
+    give(*thermal(field.material_of(part.point)), part.point, part.volume * part.share, ALL);
   }
 }
 
@@ -588,7 +492,8 @@ void MPMConduction::find_rates(const double *source, Heats &power)
     scalar.find_rates_along([&](const MPMPointMap::Run &run, int first, int n,
                                 const MPMNodeScalar::Rows q, double *factors) {
       see(first, n, q);
-      conduct_plainly(*thermal(run.material), first, n, factors);
+      const double k = thermal(run.material)->all.conductivity, *const V = volumes.data() + first;
+      for (int p = 0; p < n; p++) factors[p] = -k * V[p];
     });
   else
     scalar.find_rates(
@@ -613,8 +518,6 @@ void MPMConduction::add_given()
     if (scalar.capacity[k] > 0.0) rate[k] += given[k] / (duration * scalar.capacity[k]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMConduction::give(std::vector<double> &energy)
 {
   const auto &pic = field.pic;
@@ -632,10 +535,6 @@ void MPMConduction::give(std::vector<double> &energy)
   given.resize(field.grid.nnodes(), 0.0);
   for (std::size_t n = 0; n < given.size(); n++) given[n] += nodes[n * pic.nreal + 3];
 }
-
-/* ----------------------------------------------------------------------
-   temperatures of points
-------------------------------------------------------------------------- */
 
 double MPMConduction::nodes_to_points(const MPMRows &gradients)
 {

@@ -14,13 +14,12 @@
 #include "diffusion/mpm_layer_mean.h"
 #include "diffusion/mpm_node_scalar.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_field.h"
 #include "field/mpm_friction_heat.h"
 #include "heat/mpm_heat_faces.h"
 #include "material/material.h"
 
 #include <algorithm>
-#include <array>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -81,7 +80,7 @@ class MPMConduction : protected Pointers {
    *  contributions of all lattices, bound_by_rows() returns the bound that follows [1/time]. Points
    *  conduct less where nodes with little capacity would exceed four times the bound of nodes
    *  inside of a body. Collective. */
-  bool is_bounded_by_rows() const;
+  bool is_bounded_by_rows() const { return !field.boxes && !field.domains && steepest == 0.0; }
   enum Left { ALL, AS_SHARES };    // part of the conductivities that counts
   void add_rows(Left left = ALL);
   double most_of_rows() { return scalar.greatest_row(); }
@@ -92,13 +91,12 @@ class MPMConduction : protected Pointers {
   /** Largest rate that surfaces at edges may have: the bound of rates; if nodes with little
    *  capacity get no heat through surfaces, without their contribution to it. */
   double rate_at_edges() const { return has_idle() ? std::min(conducted, usual_rate) : conducted; }
-  /** Rates of the temperatures of the nodes by conduction and sources. source: [n] power per
-   *  volume, or null. Adds the power of sources to power. To be followed by add_given(). */
+  /** Rates of the temperatures of the nodes, or of small changes of these, by conduction and
+   *  sources. source: [n] power per volume, or null. Adds the power of sources to power. To be
+   *  followed by add_given(). */
   void find_rates(const double *source, Heats &power);
   /** Adds the rates by heat from other physics (given). */
   void add_given();
-  /** Temperatures are small changes: finds the changes of the rates by conduction alone. */
-  void find_changes();
   /** Calls the argument with the contribution of each point of this rank to the matrix of
    *  conduction, see MPMDiffusion::Term. */
   void each_term(const MPMDiffusion::Term &) const;
@@ -129,7 +127,7 @@ class MPMConduction : protected Pointers {
 
   /** Bernstein polynomials: the box of a point (MPMCutDomains) can reach into a cell that the point
    *  is not in. */
-  bool looks_beyond_points() const;
+  bool looks_beyond_points() const { return field.options.shape == MPM_NS::BERNSTEIN; }
   void extend_topology();
   /** Bernstein polynomials: idle nodes have so little capacity that nothing is conducted there, and
    *  no heat may come in. */
@@ -152,7 +150,7 @@ class MPMConduction : protected Pointers {
   /** Sum of capacity times absolute temperature over all points of this rank [energy]. */
   double heat_of_points() const;
   /** Rate at which heat crosses a cell in the material that conducts least [1/time]. */
-  double crossing_rate() const;
+  double crossing_rate() const { return slowest / (field.lattice.h * field.lattice.h); }
   double slowest_crossing = 0.0;    ///< lowest rate of the lattices of a body; 0: own
 
   double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
@@ -234,9 +232,12 @@ class MPMConduction : protected Pointers {
 
   std::vector<signed char> present;    // [materials of the field] has it points on any rank?
   const Thermal *thermal(const FixMPMMaterial *) const;
-  std::size_t index_of(const FixMPMMaterial *) const;
-  bool is_present(const Thermal &) const;
-  void keep_present(const std::vector<signed char> &mine);
+  std::size_t index_of(const FixMPMMaterial *fix) const
+  {
+    return std::find(field.materials.begin(), field.materials.end(), fix) - field.materials.begin();
+  }
+  bool is_present(const Thermal &t) const { return present[index_of(t.fix)]; }
+  void keep_present(const std::vector<signed char> &all);
   double volume_of(int i) const;
   const MPM_NS::Conduction &conduction_of(const Thermal &, int i, MPM_NS::Conduction &buffer) const;
   void find_ranges();
@@ -245,7 +246,6 @@ class MPMConduction : protected Pointers {
   void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q,
                Left left = AS_SHARES) const;
   void conduct_parts();
-  void conduct_plainly(const Thermal &, int first, int n, double *factors) const;
   double greatest_possible() const;
   double bound(const Thermal &, int i, double volume) const;
   double steepness(int i) const;

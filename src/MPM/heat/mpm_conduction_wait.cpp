@@ -14,8 +14,8 @@
 
      t <= SHARE t_1                    with the explicit limit t_1 of conduction within bodies
      t |v| <= WAY h                    for all points: bodies move and strain little on the lattice
-     t |dT/dt| <= LUMP (Tmax - Tmin)   for all points, dT/dt by the last conduction: temperatures, and with them thermal
-                                       stresses, do not change in large lumps
+     t |dT/dt| <= LUMP (Tmax - Tmin)   for all points, dT/dt by the last conduction: temperatures,
+                                       and with them thermal stresses, do not change in large lumps
 
    The first condition makes the error of Euler's method in time smaller than that of the lattice in
    space. For a wave number k, Euler's method is too fast by the share t k^2 K/(2 rho c) < SHARE h^2
@@ -40,11 +40,12 @@
 ------------------------------------------------------------------------- */
 
 #include "atom.h"
-#include "base/mpm_options.h"
+#include "base/mpm_find_fixes.h"
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_stencil.h"
 #include "heat/mpm_conduction.h"
 #include "heat/mpm_heat_flow.h"
@@ -67,8 +68,6 @@ static constexpr double NEARLY = 1.0 + 1.0e-6;
 static constexpr double ROUND_OFF = 1.0e-9;
 static constexpr double BIG = std::numeric_limits<double>::max();
 
-/** Counts one more step of fix mpm; true while it is not yet time for the conduction.
- *  Collective. */
 bool MPMHeatFlow::wait()
 {
   const double dt = fields[0]->field.step_dt();
@@ -131,10 +130,6 @@ double MPMHeatFlow::longest_wait() const
   return t;
 }
 
-/* ----------------------------------------------------------------------
-   Heat of friction in a step that waits
-------------------------------------------------------------------------- */
-
 double MPMConduction::keep_given()
 {
   static constexpr int MASS = 3;    // of a node, in its record
@@ -150,14 +145,14 @@ double MPMConduction::keep_given()
   const MPMStencil stencil(field);
   Conduction buffer;
   double got = 0.0;
-  for (const auto &run : field.map->runs) {
+  each_point_batch(field, [&](const auto &run, int first, int n) {
     const auto &block = grid.blocks[run.slot];
     const Thermal *const t = thermal(run.material);
     if (!t || std::none_of(std::begin(block.slot), std::end(block.slot), [&](int slot) {
           return slot >= 0 && warmed[slot];
         }))
-      continue;
-    for (int i = run.first; i < run.last; i++) {
+      return;
+    for (int i = first; i < first + n; i++) {
       double heat = 0.0;
       stencil.visit(block, i, [&](const MPMStencil::Node &node) {
         heat += node.weight * given[node.number];
@@ -173,30 +168,26 @@ double MPMConduction::keep_given()
         if (t->molten >= 0) c.melting.settle(history[t->temperature], history[t->molten]);
       }
     }
-  }
+  });
   given.clear();
   return got;
 }
 
-/* ----------------------------------------------------------------------
-   What determines for how long conduction may wait
-------------------------------------------------------------------------- */
-
 void MPMConduction::add_motion(Motion &motion) const
 {
   double square = 0.0, high = motion.highest, less = motion.less;
-  for (const auto &run : field.map->runs) {
+  each_point_batch(field, [&](const auto &run, int first, int n) {
     const Thermal *const t = thermal(run.material);
-    if (!t) continue;
-    const double *const v = atom->v[run.first], *const history = t->fix->history[run.first];
-    const int n = run.last - run.first, width = t->fix->nhistory;
+    if (!t) return;
+    const double *const v = atom->v[first], *const history = t->fix->history[first];
+    const int width = t->fix->nhistory;
     for (int p = 0; p < n; p++) {
       const double *const w = v + 3 * p, T = history[width * p + t->temperature];
       square = std::max(square, w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
       high = std::max(high, T);
       less = std::max(less, -T);
     }
-  }
+  });
   motion.speed = std::max(motion.speed, sqrt(square));
   motion.change = std::max(motion.change, change);
   motion.highest = high;

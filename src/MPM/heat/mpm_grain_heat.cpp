@@ -32,12 +32,8 @@
 #include "modify.h"
 #include "update.h"
 
-#include <algorithm>
-
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGrainHeat::init()
 {
@@ -99,8 +95,6 @@ void MPMGrainHeat::note_step()
 {
   dt = update->dt;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMGrainHeat::take()
 {

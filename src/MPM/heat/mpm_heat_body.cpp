@@ -7,43 +7,39 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Heat q per area through a flat surface with the normal n is in equilibrium with a constant flux in the
-   material if each node i gets q n.G_i, where G_i = sum_p V_p grad N_ip is the actual sum over the points.
-   With these weights, a temperature that varies linearly stays as it is wherever points and nodes are, also
-   at nodes that points hardly reach. At edges, G_i also has a part of the other surface, which n.G_i does not
-   have if that surface is at a right angle. And
+   Heat q per area through a flat surface with the normal n is in equilibrium with a constant flux
+   in the material if each node i gets q n.G_i, where G_i = sum_p V_p grad N_ip is the actual sum
+   over the points. With these weights, a temperature that varies linearly stays as it is wherever
+   points and nodes are, also at nodes that points hardly reach. At edges, G_i also has a part of
+   the other surface, which n.G_i does not have if that surface is at a right angle. And
 
      sum_i n.G_i x_i/sum_i n.G_i
 
-   along a line of nodes is the place at which the volume of the points ends. With weights from the functions
-   at the surface instead, nodes next to it got up to a tenth of the heat too much or too little. Because
-   |G|^2 <= C_i sum_p V_p^2 |grad N|^2/(N C_p), the response to heat of the temperature of the surface, sum_i
-   w_i T_i with w_i = n.G_i/sum n.G, is bounded, too.
+   along a line of nodes is the place at which the volume of the points ends. Because |G|^2 <= C_i
+   sum_p V_p^2 |grad N|^2/(N C_p), the response to heat of the temperature of the surface, sum_i w_i
+   T_i with w_i = n.G_i/sum n.G, is bounded, too.
 
-   The sums are over all points of the field. Where some of them do not conduct, a node may have next to no
-   capacity. |G|^2 then has the bound above with V_i = sum_p V_p N instead of C_i, and a factor min(1, 2 f),
-   with the share f of V_i that conducts, makes w^2/C_i bounded again. The part of the weights that these
-   factors leave is the share of the area through which heat goes.
+   Where some points do not conduct, a node may have next to no capacity. |G|^2 then has the bound
+   above with V_i = sum_p V_p N instead of C_i, and a factor min(1, 2 f), with the share f of V_i
+   that conducts, makes w^2/C_i bounded again. The part of the weights that these factors leave is
+   the share of the area through which heat goes.
 
-   Linear functions have no such bound: a point just inside of a cell gives the node behind it a gradient, but
-   next to no capacity. There the factor is min(1, 2 V_i/V), where V is the volume of a node with this
-   surface, as at faces of the box (mpm_heat_faces.cpp). The place at which a temperature is taken is then
-   wrong by a part of a cell. And the end of the volume of the points is known only to half of their spacing,
-   because the gradients are the same for all places of a point in a cell.
+   Linear functions have no such bound: a point just inside of a cell gives the node behind it a
+   gradient, but next to no capacity. There the factor is min(1, 2 V_i/V), where V is the volume of
+   a node with this surface, as at faces of the box (mpm_heat_faces.cpp). The place at which a
+   temperature is taken is then wrong by a part of a cell.
 
-   Bernstein polynomials have no such bound, either, and their nodes at the sides and in the middle of cells
-   see a surface differently. The place, normal, and area of the surface are those of lines of quadratic
-   B-splines on the same nodes, from sums over boxes, because points may be anywhere in a cell. Across such a
-   line, nodes of the field have the integrals 4/3 and 2/3. The line gives its area to these, and the part
-   that a line of the field gets has the weights of the functions where the surface crosses it, with the
-   factor above.
+   Bernstein polynomials have no such bound, either, and their nodes at the sides and in the middle
+   of cells see a surface differently. The place, normal, and area of the surface are those of lines
+   of quadratic B-splines on the same nodes, from sums over boxes, because points may be anywhere in
+   a cell. Across such a line, nodes of the field have the integrals 4/3 and 2/3. The line gives its
+   area to these, and the part that a line of the field gets has the weights of the functions where
+   the surface crosses it, with the factor above.
 
-   The area of a line is that of the whole line where the body fills all that is behind its surface, and less
-   at the sides of the body and of the box. The sum of n.G has the noise of sums over points, which are not
-   integrals.
-
-   A surface that is inclined crosses lines of nodes along several axes. The lines along the axis a count with
-   the share s_a = n_a^4/sum_b n_b^4 of the area, each h^(d-1)/|n_a|.
+   The area of a line is that of the whole line where the body fills all that is behind its surface,
+   and less at the sides of the body and of the box. A surface that is inclined crosses lines of
+   nodes along several axes. The lines along the axis a count with the share s_a = n_a^4/sum_b n_b^4
+   of the area, each h^(d-1)/|n_a|.
 ------------------------------------------------------------------------- */
 
 #include "heat/mpm_heat_body.h"
@@ -69,9 +65,6 @@ using MathSpecial::square;
 static constexpr double LEAST = 0.01;
 // share of the volume of a node that has to conduct for its full weight
 static constexpr double ENOUGH = 0.5;
-// sums over points are not exactly integrals: a line counts as full
-// from FULL on, with a transition from NOT_FULL
-static constexpr double FULL = 0.95, NOT_FULL = 0.8;
 // length of the mean of unit normals from which on a surface is no
 // edge: that of two normals that differ by 36 degrees
 static constexpr double STRAIGHT = 0.95;
@@ -82,8 +75,6 @@ MPMHeatBody::MPMHeatBody(LAMMPS *lmp, MPMField &field, MPMConduction *conduction
     Pointers(lmp), field(field), conduction(conduction), profile(field)
 {
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMHeatBody::list_images()
 {
@@ -102,15 +93,6 @@ void MPMHeatBody::list_images()
       const std::array<int, 2> image = {(int) slot, of};
       if (images.empty() || images.back() != image) images.push_back(image);
     }
-}
-
-void LAMMPS_NS::activate_blocks_around(MPMField &field, const int *b)
-{
-  for (int k = 0; k < (field.lattice.dim == 3 ? 27 : 9); k++) {
-    const int next[3] = {b[0] + k % 3 - 1, b[1] + k / 3 % 3 - 1,
-                         b[2] + k / 9 - (field.lattice.dim == 3)};
-    field.grid.activate(next);
-  }
 }
 
 void MPMHeatBody::begin_step()
@@ -148,8 +130,8 @@ double MPMHeatBody::node_circle(int64_t node) const
   return field.frame->node_circle((int) (node / NODES_PER_BLOCK), (int) (node % NODES_PER_BLOCK));
 }
 
-/** Length of the circle around the axis of symmetry. Lines along this axis have that of their nodes, which
- *  next to the axis have a mean radius. */
+/** Length of the circle around the axis of symmetry. Lines along this axis have that of their
+ *  nodes, which next to the axis have a mean radius. */
 double MPMHeatBody::circle(int axis, const int *index, double at) const
 {
   if (!field.options.axisymmetric) return 1.0;
@@ -157,8 +139,6 @@ double MPMHeatBody::circle(int axis, const int *index, double at) const
   const double r = lattice.origin[0] + (axis == 0 ? at : index[0]) * lattice.h;
   return field.frame->circle(std::max(r, axis == 0 ? 0.0 : 0.25 * lattice.h));
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *into,
                             Line &line) const
@@ -192,16 +172,12 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *
   const bool linear = field.options.shape == LINEAR;
   const double part = there / (linear ? std::min(full, full_at) : full);
   line.part = std::min(1.0, part);
-  line.area = full_area * circle(axis, base, at) *
-      std::min(1.0,
-               part < NOT_FULL
-                   ? part
-                   : NOT_FULL + (part - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL));
+  line.area = full_area * circle(axis, base, at) * std::min(1.0, heat_area_share(part));
   return !linear || weigh_by_functions(first, at, part, into[axis], w, line);
 }
 
-/** Weights w of the functions at the surface. The weight of a node is reduced in proportion to its volume if
- *  this is less than half of what it is where material fills this part of the line. */
+/** Weights w of the functions at the surface. The weight of a node is reduced in proportion to its
+ *  volume if this is less than half of what it is where material fills this part of the line. */
 bool MPMHeatBody::weigh_by_functions(int first, double at, double part, double into,
                                      const double *w, Line &line) const
 {
@@ -215,16 +191,6 @@ bool MPMHeatBody::weigh_by_functions(int first, double at, double part, double i
   }
   for (int k = 0; k < line.n; k++) line.weight[k] /= sum;
   return sum > LEAST;
-}
-
-/* ----------------------------------------------------------------------
-   Bernstein polynomials: cells have two node spacings, with nodes at their sides (even numbers) and in the
-   middle
-------------------------------------------------------------------------- */
-
-bool MPMHeatBody::spreads() const
-{
-  return field.options.shape == BERNSTEIN;
 }
 
 static double width(int index)
@@ -296,8 +262,6 @@ bool MPMHeatBody::spread(const int *base, double at, const double *into, const L
   return !parts.empty();
 }
 
-/* ---------------------------------------------------------------------- */
-
 double MPMHeatBody::touches(double gap) const
 {
   const double more = field.options.shape == LINEAR ? MORE_WITH_LINEAR : 0.0;
@@ -359,13 +323,6 @@ double MPMHeatBody::drift(const Line &line) const
   return line.value(conduction->rate.data());
 }
 
-/* ---------------------------------------------------------------------- */
-
-void MPMHeatBody::begin_edges()
-{
-  noted.assign(NOTED * field.grid.nnodes(), 0.0);
-}
-
 void MPMHeatBody::note(const Line &line, const double *into, double part)
 {
   for (int k = 0; k < line.n; k++) {
@@ -383,11 +340,6 @@ void MPMHeatBody::note_face(int64_t node, int axis, double weight)
   noted[NOTED * node + PARTS] += std::fabs(weight);
 }
 
-void MPMHeatBody::end_edges()
-{
-  field.nodes.sum(noted.data(), NOTED, 0, NOTED);
-}
-
 bool MPMHeatBody::is_edge(int64_t node) const
 {
   const double *const at = &noted[NOTED * node];
@@ -401,18 +353,6 @@ bool MPMHeatBody::is_edge(const Line &line) const
   return false;
 }
 
-/* ---------------------------------------------------------------------- */
-
-void MPMHeatBody::begin_stage()
-{
-  heat.assign(field.grid.nnodes(), 0.0);
-}
-
-void MPMHeatBody::give(const Line &line, double power)
-{
-  line.spread(power, heat.data());
-}
-
 void MPMHeatBody::end_stage()
 {
   field.nodes.sum(heat.data(), 1, 0, 1);
@@ -422,9 +362,7 @@ void MPMHeatBody::end_stage()
     if (C[k] > 0.0) rate[k] += heat[k] / C[k];
 }
 
-/* ---------------------------------------------------------------------- */
-
-double MPMHeatBody::room(int axis, int index) const
+double MPMHeatBody::fraction_in_box(int axis, int index) const
 {
   constexpr int FIXED = 1;
   const auto &lattice = field.lattice;
@@ -449,17 +387,11 @@ double MPMHeatBody::memory_usage() const
       sizeof(double);
 }
 
-/* ---------------------------------------------------------------------- */
-
-void MPMHeatShares::begin(const MPMHeatBody &body)
+double LAMMPS_NS::heat_area_share(double part)
 {
-  counts.assign(body.field.grid.nnodes() * body.field.lattice.dim, 0.0);
-}
-
-void MPMHeatShares::sum(const MPMHeatBody &body)
-{
-  const int dim = body.field.lattice.dim;
-  body.field.nodes.sum(counts.data(), dim, 0, dim);
+  static constexpr double FULL = 0.95, NOT_FULL = 0.8;
+  if (part < NOT_FULL) return part;
+  return NOT_FULL + (part - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL);
 }
 
 double LAMMPS_NS::heat_share_of_axis(const double *normal, int dim, int axis)
@@ -470,4 +402,92 @@ double LAMMPS_NS::heat_share_of_axis(const double *normal, int dim, int axis)
   for (int d = 0; d < dim; d++)
     if (std::fabs(normal[d]) >= GRAZES) all += square(square(normal[d]));
   return square(square(normal[axis])) / all;
+}
+
+/* ----------------------------------------------------------------------
+   A node whose function reaches both surfaces of a body gets parts of V grad N of both, which
+   cancel: what is left belongs to a smaller area. That happens where the body is thinner than the
+   functions are wide, 3 node spacings for quadratic functions and 4 for cubic ones. It is found by
+   looking that deep along the normal: in a thin body, there is no material just behind this depth.
+   At edges and corners there is, as far as they are not sharper than a right angle. The area of the
+   lines would not show the difference, because it is small at edges, too.
+------------------------------------------------------------------------- */
+
+static constexpr int LOOK_EVERY = 50;    // steps
+// node spacings behind the width of the functions at which material is looked for
+static constexpr double BEHIND = 0.3;
+// greatest filled share of the volume of nodes at an empty place
+static constexpr double EMPTY = 0.2;
+static constexpr double KNOWN = 0.5;           // least share of the nodes there that are known
+static constexpr double LEAST_IN_BOX = 0.1;    // least share of the nodes there that is in the box
+// share of the area that is too thin: less would not change the sum by 3 %
+static constexpr double MUCH = 0.05;
+
+/** Is the place empty of material? 1: yes, 0: no, -1: unknown. Nothing is known where no points
+ *  have been summed up; with one rank, nodes that have no block have no points. */
+static int is_empty(const MPMHeatBody &body, const double *at)
+{
+  const auto &lattice = body.field.lattice;
+  int first[3] = {0, 0, 0};
+  for (int d = 0; d < lattice.dim; d++) first[d] = (int) std::floor(at[d]);
+  double known = 0.0, share = 0.0, in_box = 0.0;
+  for (int k = 0; k < (1 << lattice.dim); k++) {
+    int index[3] = {0, 0, 0};
+    double w = 1.0, inside = 1.0;
+    for (int d = 0; d < lattice.dim; d++) {
+      const int up = k >> d & 1;
+      const double part = at[d] - first[d];
+      w *= up ? part : 1.0 - part;
+      inside *= body.fraction_in_box(d, first[d] + up);
+      index[d] = lattice.wrap(d, first[d] + up);
+    }
+    const int64_t node = body.field.grid.locate(index);
+    if (node < 0 ? !body.knows_all() : !body.near[node / NODES_PER_BLOCK]) continue;
+    known += w;
+    in_box += w * inside;
+    if (node >= 0) share += w * body.share[node];
+  }
+  if (known < KNOWN) return -1;
+  // material at a face of the box goes on behind it
+  return in_box > LEAST_IN_BOX && share < EMPTY * in_box;
+}
+
+bool MPMHeatThin::looks(int nentries)
+{
+  if (warned || steps++ % LOOK_EVERY) return false;
+  areas.assign(nentries, {0.0, 0.0});
+  notes.assign(nentries, {});
+  return true;
+}
+
+void MPMHeatThin::take(int entry, const MPMHeatBody &body, const int *node, int axis, double part,
+                       const double *into, double area)
+{
+  const auto &lattice = body.field.lattice;
+  double at[3] = {(double) node[0], (double) node[1], (double) node[2]};
+  at[axis] += part;
+  const double deep = 2.0 * body.profile.reach() + BEHIND;
+  double behind[3] = {0.0, 0.0, 0.0};
+  for (int d = 0; d < lattice.dim; d++) behind[d] = at[d] + deep * into[d];
+  const int empty = is_empty(body, behind);
+  if (empty < 0) return;
+  areas[entry][1] += area;
+  if (!empty) return;
+  areas[entry][0] += area;
+  double x[3] = {0.0, 0.0, 0.0};
+  for (int d = 0; d < lattice.dim; d++) x[d] = lattice.origin[d] + at[d] * lattice.h;
+  notes[entry].take({0.0, x[0], x[1], x[2]});
+}
+
+bool MPMHeatThin::report(MPI_Comm world, Found &found)
+{
+  std::vector<std::array<double, 2>> all(areas.size());
+  MPI_Allreduce(areas.data(), all.data(), 2 * (int) areas.size(), MPI_DOUBLE, MPI_SUM, world);
+  for (std::size_t k = 0; k < all.size(); k++) {
+    std::array<double, 4> first;
+    if (!(all[k][0] > MUCH * all[k][1]) || !notes[k].report(world, first)) continue;
+    found = {(int) k, {first[1], first[2], first[3]}};
+    return warned = true;
+  }
+  return false;
 }

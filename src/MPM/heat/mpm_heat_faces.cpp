@@ -7,45 +7,45 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   A face with a prescribed temperature is a constraint on the equations of the nodes, C dT/dt = R, and the
-   heat through it is the multiplier: dT_k = lambda w_k/C_k changes sum_k w_k T_k with the least sum of C
-   dT^2. Rates of temperatures are treated in the same way, so that the temperature at the face stays. This is
-   a projection, symmetric in the norm of capacities: it leaves explicit steps as stable as they were. Where
-   lines along several axes meet, they take turns, forward and backward, which is symmetric, too.
+   A face with a prescribed temperature is a constraint on the equations of the nodes, C dT/dt = R,
+   and the heat through it is the multiplier: dT_k = lambda w_k/C_k changes sum_k w_k T_k with the
+   least sum of C dT^2. Rates are treated in the same way, so that the temperature at the face
+   stays. This is a projection, symmetric in the norm of capacities: it leaves explicit steps as
+   stable as they were. Where lines along several axes meet, they take turns, forward and backward,
+   which is symmetric, too.
 
-   Weights are those of the sums over points (mpm_heat_body.cpp), with which temperatures that vary linearly
-   are exact wherever the face is in a cell. In material that is too thin for these, weights are those of the
-   functions at the face. These do not account for nodes outside of the box with next to no points, and would
-   give finite heat to a node without capacity. Hence the weight of a node counts in full only if the node has
-   at least half of the volume that it has where material fills the box, and in proportion to the volume below
+   Weights are those of the sums over points (mpm_heat_body.cpp). In material that is too thin for
+   these, they are those of the functions at the face. These would give finite heat to a node
+   outside of the box without capacity. Hence the weight of a node counts in full only if the node
+   has at least half of the volume that it has where material fills the box, and in proportion below
    that.
 
-   Convection and radiation: the temperature at a face follows that outside with the rate r = R dP/dT of a
-   line, with its response R and the power P. As at other surfaces (mpm_heat_surface.cpp) this rate is limited
-   to l: the line gets
+   Convection and radiation: the temperature at a face follows that outside with the rate r = R
+   dP/dT of a line, with its response R and the power P. As at other surfaces (mpm_heat_surface.cpp)
+   this rate is limited to l: the line gets
 
      P = F - a D/R,   a = r/l - 1,
 
-   F: the power without a limit, D: the rate of its temperature by all heat, P included, which is zero when
-   nothing changes. With a projection Pi to the temperature of each line, this is (1 + sum a Pi)^-1 times the
-   rates without limits. In the norm of capacities it is symmetric, and for any amplitude y of the line in a
-   mode r y/(1 + a y) <= l: what follows at edges and corners is at most as fast as the sum of the rates of
-   all axes. Lines of several faces have nodes in common there, and D of one line depends on the powers of the
-   others. With sum_k w_k w'_k/C_k between two lines, a matrix G with R on its diagonal, the equations are
+   F: the power without a limit, D: the rate of its temperature by all heat, P included, which is
+   zero when nothing changes. With a projection Pi to the temperature of each line, this is (1 + sum
+   a Pi)^-1 times the rates without limits. In the norm of capacities it is symmetric, and for any
+   amplitude y of the line in a mode r y/(1 + a y) <= l: what follows at edges and corners is at
+   most as fast as the sum of the rates of all axes. Lines of several faces have nodes in common
+   there. With sum_k w_k w'_k/C_k between two lines, a matrix G with R on its diagonal, the
+   equations are
 
      (R/a) P + sum G P' = (R/a) F - D_0,   D_0: by all other heat.
 
-   Lines with a prescribed temperature are included, with a very small R/a and without F. At edges, r is at
-   most some times the rate of conduction, whatever the time step is. This is done with a smaller area.
-   Temperatures of the faces there then differ from those outside by a small part of their difference from
-   those a cell further inside. If lines took turns instead, each with what the lines before it have left,
-   edges of faces with one temperature outside would not be symmetric. Between different temperatures, a weak
-   dependence on the time step is left.
+   Lines with a prescribed temperature are included, with a very small R/a and without F. At edges,
+   r is at most some times the rate of conduction, by a smaller area. Temperatures of the faces
+   there then differ from those outside by a small part of their difference from those a cell
+   further inside. Lines that took turns would not be symmetric. Between different temperatures, a
+   weak dependence on the time step is left.
 
-   How near is material? Along a line, the ratio of sum_k w_k V_k to its value where material fills the box up
-   to the face is 1 without a gap, 0.7 with a gap of a quarter of a cell, and 0.46 with half a cell
-   (quadratic). At the sides of a body, lines have points on one side only; the fullest node of a line shows
-   how many.
+   How near is material? Along a line, the ratio of sum_k w_k V_k to its value where material fills
+   the box up to the face is 1 without a gap, 0.7 with a gap of a quarter of a cell, and 0.46 with
+   half a cell (quadratic). At the sides of a body, the fullest node of a line shows how many points
+   the line has.
 ------------------------------------------------------------------------- */
 
 #include "heat/mpm_heat_faces.h"
@@ -71,15 +71,10 @@ static constexpr double ENOUGH = 0.5;    // share of the volume of a node for it
 static constexpr double LIGHT = 0.1;
 // fullness from which on material touches a face, and from which on all of it is at the face
 static constexpr double TOUCHES = 0.6, IS_AT_FACE = 0.75;
-// sums over points are not exactly integrals: a line counts as full
-// from FULL on, with a transition from NOT_FULL
-static constexpr double FULL = 0.95, NOT_FULL = 0.8;
 // greatest rate of lines at edges, over that of conduction
 static constexpr double FIGHTS = 4.0;
 // stiffness of equations that stands for a prescribed temperature
 static constexpr double STIFFEST = 1.0e9;
-
-/* ---------------------------------------------------------------------- */
 
 void MPMHeatFaces::init(double sigma_of_units)
 {
@@ -129,9 +124,9 @@ double MPMHeatFaces::limit(double cap, double conduction, const double rates[3])
   return sum;
 }
 
-/** Expected rate of exchange. Where material fills the box, the response of a line times its area and h is up
- *  to 1.9/capacity, and up to twice that in lines whose nodes have only half of their volume. A rate that is
- *  not known is the limit. */
+/** Expected rate of exchange. Where material fills the box, the response of a line times its area
+ *  and h is up to 1.9/capacity, and up to twice that in lines whose nodes have only half of their
+ *  volume. A rate that is not known is the limit. */
 double MPMHeatFaces::expected_rate(double cap, double capacity) const
 {
   static constexpr double MOST = 5.0;
@@ -156,8 +151,6 @@ int MPMHeatFaces::axes_that_follow() const
     if (conditions[face.face].kind > MPMHeatCondition::FLUX) follows[face.axis] = true;
   return follows[0] + follows[1] + follows[2];
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMHeatFaces::extend_topology()
 {
@@ -204,10 +197,7 @@ void MPMHeatFaces::topology_changed()
   find_groups();
 }
 
-/* ----------------------------------------------------------------------
-   A rank that has a node of a line has all nodes of it, and so all lines of a group.
-------------------------------------------------------------------------- */
-
+/** A rank that has a node of a line has all nodes of it, and so all lines of a group. */
 void MPMHeatFaces::find_groups()
 {
   groups.clear();
@@ -241,10 +231,10 @@ void MPMHeatFaces::find_groups()
   }
 }
 
-/** Limits the rates of faces that meet at an edge. With different temperatures, these would exchange heat
- *  through the nodes of the edge in proportion to their coefficients, and not to what conduction lets
- *  through. The two sides of a thin body also have nodes in common, but no edge: heat between them has a
- *  length to go. */
+/** Limits the rates of faces that meet at an edge. With different temperatures, these would
+ *  exchange heat through the nodes of the edge in proportion to their coefficients, and not to what
+ *  conduction lets through. The two sides of a thin body also have nodes in common, but no edge:
+ *  heat between them has a length to go. */
 void MPMHeatFaces::slow_down(Group &group, double conduction) const
 {
   int axes = 0;
@@ -283,8 +273,8 @@ void MPMHeatFaces::slow_down_at_edges(const MPMHeatBody &body, double conduction
     }
 }
 
-/** Lists the lines of a group that are limited or held, if any is limited, and finds the factors L L^T of the
- *  matrix of their equations. */
+/** Lists the lines of a group that are limited or held, if any is limited, and finds the factors L
+ *  L^T of the matrix of their equations. */
 void MPMHeatFaces::set_up(Group &group) const
 {
   auto &lines = group.lines;
@@ -361,10 +351,9 @@ double MPMHeatFaces::circle(int64_t node) const
   return field.frame->node_circle((int) (node / NODES_PER_BLOCK), (int) (node % NODES_PER_BLOCK));
 }
 
-/* ---------------------------------------------------------------------- */
-
-/** Cross section of a line of nodes along an axis, over that of a cell: 1, except that with Bernstein
- *  polynomials a node at the side of a cell has 4/3 of a spacing along an axis, and one in the middle 2/3. */
+/** Cross section of a line of nodes along an axis, over that of a cell: 1, except that with
+ *  Bernstein polynomials a node at the side of a cell has 4/3 of a spacing along an axis, and one
+ *  in the middle 2/3. */
 double MPMHeatFaces::width(int64_t node, int axis) const
 {
   if (field.options.shape != BERNSTEIN) return 1.0;
@@ -396,9 +385,7 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
   const double near = there / (full * most);
   if (!(near > TOUCHES)) return;
 
-  const double aside = most < NOT_FULL || is_level
-      ? most
-      : NOT_FULL + (most - NOT_FULL) * (1.0 - NOT_FULL) / (FULL - NOT_FULL);
+  const double aside = is_level ? most : heat_area_share(most);
   line.area = std::min(1.0, aside) * cell / grid.lattice.h *
       (face.axis ? circle(line.node[0]) : field.frame->circle(face.x)) *
       std::min(1.0, (near - TOUCHES) / (IS_AT_FACE - TOUCHES));
@@ -422,11 +409,9 @@ void MPMHeatFaces::prepare(const Face &face, Line &line, const std::vector<doubl
   }
 }
 
-/* ----------------------------------------------------------------------
-   Weights from the sums over points, see mpm_heat_body.cpp. Around an axis of symmetry, a flux in proportion
-   to 1/r is in equilibrium. Where material is too thin, the sums of its other side reduce these sums.
-------------------------------------------------------------------------- */
-
+/** Weights from the sums over points, see mpm_heat_body.cpp. Around an axis of symmetry, a flux in
+ *  proportion to 1/r is in equilibrium. Where material is too thin, the sums of its other side
+ *  reduce these sums. */
 bool MPMHeatFaces::weigh_by_surface(const Face &face, Line &line,
                                     const std::vector<double> &gradient,
                                     const std::function<double(int64_t)> &conducting) const
@@ -450,8 +435,8 @@ bool MPMHeatFaces::is_near(const double *place, double distance) const
   });
 }
 
-/** Does a line of a face have some nodes that are taken, but not all? Nodes with a small weight at the face
- *  may be out of reach of points, and do not count. */
+/** Does a line of a face have some nodes that are taken, but not all? Nodes with a small weight at
+ *  the face may be out of reach of points, and do not count. */
 bool MPMHeatFaces::has_part_of_line(const std::function<bool(int64_t)> &taken) const
 {
   static constexpr double SEEN = 0.25;
@@ -492,8 +477,6 @@ void MPMHeatFaces::begin_step(const std::vector<double> &capacity,
     }
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMHeatCondition::flux(double T, double sigma) const
 {
@@ -543,12 +526,6 @@ void MPMHeatFaces::hold(std::vector<double> &temperature, Heats &heat) const
   });
 }
 
-/** Heat per area that comes in, or its change for a change of the temperature. */
-double MPMHeatFaces::flux(bool changes, const Face &face, const Line &line, double T) const
-{
-  return changes ? -line.slope * T : conditions[face.face].flux(T, sigma);
-}
-
 bool MPMHeatFaces::linearize(const std::vector<double> &temperature)
 {
   bool symmetric = true;
@@ -562,14 +539,8 @@ bool MPMHeatFaces::linearize(const std::vector<double> &temperature)
   return symmetric;
 }
 
-void MPMHeatFaces::add_changes(const std::vector<double> &change, std::vector<double> &rate) const
-{
-  Heats power(NFACE + 1);
-  add(true, change, rate, power);
-}
-
-/** Visits the terms of lines. Ranks that have a node of a line have the line; it belongs to the owner of the
- *  first of its nodes with a capacity. */
+/** Visits the terms of lines. Ranks that have a node of a line have the line; it belongs to the
+ *  owner of the first of its nodes with a capacity. */
 void MPMHeatFaces::each_term(double least, const MPMDiffusion::Term &use) const
 {
   static constexpr double STIFF = 100.0;
@@ -587,8 +558,8 @@ void MPMHeatFaces::each_term(double least, const MPMDiffusion::Term &use) const
   }
 }
 
-void MPMHeatFaces::add(bool changes, const std::vector<double> &temperature,
-                       std::vector<double> &rate, Heats &power) const
+void MPMHeatFaces::add_rates(bool changes, const std::vector<double> &temperature,
+                             std::vector<double> &rate, Heats &power) const
 {
   const auto visit = [&](bool limited, const auto &power_of) {
     for (const auto &face : faces) {

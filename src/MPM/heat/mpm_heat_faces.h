@@ -32,8 +32,8 @@ struct MPMHeatCondition {
   double now[2] = {0.0, 0.0};    ///< values in this step
 
   int nvalue() const { return kind == INSULATED ? 0 : (kind <= FLUX ? 1 : 2); }
-  /** Heat flux into the body per area at this temperature of the surface; for conditions that do not prescribe
-   *  the temperature. sigma: the Stefan-Boltzmann constant. */
+  /** Heat flux into the body per area at this temperature of the surface; for conditions that do
+   *  not prescribe the temperature. sigma: the Stefan-Boltzmann constant. */
   double flux(double temperature, double sigma) const;
   /** Decrease of the flux per unit of temperature. */
   double derivative(double temperature, double sigma) const;
@@ -41,10 +41,11 @@ struct MPMHeatCondition {
   double slope(double temperature, double sigma) const;
 };
 
-/** Heat through the faces of the box, which may lie anywhere between nodes, at the nodes of one field.
+/** Heat through the faces of the box, which may lie anywhere between nodes, at the nodes of one
+ *  field.
  *
- *  The temperature at the face follows from the shape functions, sum_k w_k T_k along each line of nodes normal
- *  to the face. Heat q through the face goes to these nodes with the same weights. */
+ *  The temperature at the face follows from the shape functions, sum_k w_k T_k along each line of
+ *  nodes normal to the face. Heat q through the face goes to these nodes with the same weights. */
 class MPMHeatFaces : protected Pointers {
  public:
   static constexpr int NFACE = 6;
@@ -57,8 +58,8 @@ class MPMHeatFaces : protected Pointers {
 
   /** Start of a run: finds the faces. sigma: the Stefan-Boltzmann constant. */
   void init(double sigma);
-  /** Keeps prescribed temperatures exactly also where faces meet: for steps so long that the loss in a single
-   *  step matters. */
+  /** Keeps prescribed temperatures exactly also where faces meet: for steps so long that the loss
+   *  in a single step matters. */
   void hold_exactly() { turns = 20; }
   /** Is there a face that is not insulated? */
   bool any() const { return !faces.empty(); }
@@ -71,15 +72,15 @@ class MPMHeatFaces : protected Pointers {
 
   /** Marks the blocks [slot] that contain nodes of lines. */
   void mark_near(std::vector<char> &near) const;
-  /** Finds the lines that touch material in this step, from the capacities and volumes of nodes. body: its
-   *  surface, or null; ends: sums of V grad N to be used in place of the body, or empty. rates: raised to the
-   *  largest rates on this rank at which temperatures at the faces of each axis follow the outside temperature
-   *  [1/time]. */
+  /** Finds the lines that touch material in this step, from the capacities and volumes of nodes.
+   *  body: its surface, or null; ends: sums of V grad N to be used in place of the body, or empty.
+   *  rates: raised to the largest rates on this rank at which temperatures at the faces of each
+   *  axis follow the outside temperature [1/time]. */
   void begin_step(const std::vector<double> &capacity, const std::vector<double> &volume,
                   const MPMHeatBody *body, const std::vector<double> &ends,
                   const std::vector<double> &temperature, double rates[3]);
-  /** The field is one of several lattices of a body (MPMHeatLevels): the functions of nodes at its rim cover
-   *  only a part of their volume. */
+  /** The field is one of several lattices of a body (MPMHeatLevels): the functions of nodes at its
+   *  rim cover only a part of their volume. */
   bool is_level = false;
   /** Is a place on the lattice within this distance of a face? */
   bool is_near(const double *place, double distance) const;
@@ -87,31 +88,29 @@ class MPMHeatFaces : protected Pointers {
   bool has_part_of_line(const std::function<bool(int64_t)> &taken) const;
   /** Notes the lines of the faces for edges of other surfaces. */
   void note_edges(MPMHeatBody &) const;
-  /** At edges of faces with other surfaces, limits the rate at which temperatures follow to the rate of
-   *  conduction. */
+  /** At edges of faces with other surfaces, limits the rate at which temperatures follow to the
+   *  rate of conduction. */
   void slow_down_at_edges(const MPMHeatBody &, double conduction);
-  /** Limits the rate at which temperatures follow to cap. conduction: bound of the rates of conduction; rates:
-   *  largest rates of all ranks. Returns a bound for nodes at edges and corners. */
+  /** Limits the rate at which temperatures follow to cap. conduction: bound of the rates of
+   *  conduction; rates: largest rates of all ranks. Returns a bound for nodes at edges and
+   *  corners. */
   double limit(double cap, double conduction, const double rates[3]);
-  /** The same bound, available also before the first step, for the limit cap and the least capacity per volume
-   *  [1/time]. */
+  /** The same bound, available also before the first step, for the limit cap and the least capacity
+   *  per volume [1/time]. */
   double expected_rate(double cap, double capacity) const;
-  /** Sets the prescribed temperatures of faces by the smallest change in the norm of capacities. Adds the heat
-   *  of nodes that this rank owns. */
+  /** Sets the prescribed temperatures of faces by the smallest change in the norm of capacities.
+   *  Adds the heat of nodes that this rank owns. */
   void hold(std::vector<double> &temperature, Heats &) const;
-  /** Adds the heat through faces to the rates of temperatures, which must include all other heat of the field
-   *  already, and keeps prescribed temperatures fixed. Adds the power. */
-  void add_rates(const std::vector<double> &temperature, std::vector<double> &rate,
-                 Heats &power) const
-  {
-    add(false, temperature, rate, power);
-  }
-  /** Linearizes the conditions around these temperatures for add_changes(). Returns true if the result is
-   *  symmetric on this rank. */
+  /** Adds the heat through faces to the rates of temperatures, which must include all other heat of
+   *  the field already, and keeps prescribed temperatures fixed. changes: temperatures are small
+   *  changes from those of linearize(). Adds the power. */
+  void add_rates(bool changes, const std::vector<double> &temperature, std::vector<double> &rate,
+                 Heats &power) const;
+  /** Linearizes the conditions around these temperatures. Returns true if the
+   *  result is symmetric on this rank. */
   bool linearize(const std::vector<double> &temperature);
-  void add_changes(const std::vector<double> &change, std::vector<double> &rate) const;
-  /** Passes on the terms that this rank adds to the matrix of conduction. Prescribed temperatures become a
-   *  stiff exchange, whose rate is a large multiple of least [1/time]. */
+  /** Passes on the terms that this rank adds to the matrix of conduction. Prescribed temperatures
+   *  become a stiff exchange, whose rate is a large multiple of least [1/time]. */
   void each_term(double least, const MPMDiffusion::Term &) const;
   /** Changes the rates so that prescribed temperatures stay. Adds the power. */
   void hold_rates(std::vector<double> &rate, Heats &) const;
@@ -126,7 +125,7 @@ class MPMHeatFaces : protected Pointers {
     double response;    // response of the temperature at the face to heat: sum of weight * change
     double area;        // area of the material that touches the face
     double rate;        // rate at which the temperature at the face follows the outside temperature
-    double slope;       // decrease of the flux per unit of temperature, for add_changes()
+    double slope;       // decrease of the flux per unit of temperature, for small changes
     bool joint;         // its power comes from the equations of a group in this step
   };
   struct Face {
@@ -168,9 +167,11 @@ class MPMHeatFaces : protected Pointers {
   void set_up(Group &) const;
   bool is_limited(const Line &line) const { return line.rate > fastest; }
   double softness(const Face &, const Line &) const;
-  void add(bool changes, const std::vector<double> &temperature, std::vector<double> &rate,
-           Heats &) const;
-  double flux(bool changes, const Face &, const Line &, double T) const;
+  /** Heat per area that comes in, or its change for a change of the temperature. */
+  double flux(bool changes, const Face &face, const Line &line, double T) const
+  {
+    return changes ? -line.slope * T : conditions[face.face].flux(T, sigma);
+  }
   void solve(const Group &, bool changes, const std::vector<double> &temperature,
              std::vector<double> &rate, Heats &) const;
   template <class F> void visit_held(const F &) const;

@@ -10,14 +10,12 @@
 #define LMP_MPM_HEAT_FLOW_H
 
 #include "base/mpm_rows.h"
+#include "declare/option.h"
 #include "diffusion/mpm_diffusion_solver.h"
-#include "diffusion/mpm_super_step.h"
 #include "heat/mpm_conduction.h"
-#include "heat/mpm_heat_contact.h"
+#include "heat/mpm_heat_body.h"
 #include "heat/mpm_heat_levels.h"
-#include "heat/mpm_heat_options.h"
 #include "heat/mpm_heat_surface.h"
-#include "heat/mpm_heat_thin.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -27,6 +25,40 @@
 
 namespace LAMMPS_NS {
 class MPMPlan;
+
+/** Keywords of fix mpm/heat. */
+struct MPMHeatOptions {
+  MPMHeatCondition conditions[MPMHeatFaces::NFACE];
+  MPMHeatSurfaces::Conditions surfaces;
+  MPMHeatSurfaceCondition surface;    ///< condition that is being read
+  std::vector<MPMHeatPair> pairs;
+  MPMHeatPair pair;      ///< pair that is being read
+  std::string source;    ///< name of a variable, without v_; empty: none
+  MPMHeatTransfer transfer;
+  int most_stages = 32;
+  static constexpr int AUTO = 0;
+  int every = AUTO;    // steps of fix mpm per conduction, or AUTO
+  MPMDiffusionOptions in_time;
+  bool grains = false;
+  bool penalty = false;
+
+  bool gives_grains = false, gives_penalty = false;    ///< are the keywords given?
+
+  /** Names of the faces of the box. */
+  static const char *const FACE_NAME[];
+
+  MPM_NS::Options declare(int dimension);
+  /** Calls f(condition, name) for the conditions at all faces and surfaces. */
+  template <class F> void each_condition(const F &f)
+  {
+    for (int face = 0; face < MPMHeatFaces::NFACE; face++) f(conditions[face], FACE_NAME[face]);
+    for (auto &[region, condition] : surfaces)
+      f(condition, region.empty() ? "surface" : "region " + region);
+  }
+  /** Is there radiation? */
+  bool radiates();
+  bool has_variables();
+};
 
 /** The flow of heat in all fields together: conduction in bodies, heat through faces, surfaces, and
  *  contacts, in explicit stages or in implicit steps, each for one or several steps of the
@@ -49,7 +81,10 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
 
   /** Number of places in lists of heat: faces of the box, sources, givers, surfaces, contacts. */
   int n() const { return contact_places() + (int) options.pairs.size(); }
-  void set_size(int n);    ///< sets the length of lists of heat, when options are known
+  void set_size(int n)
+  {
+    for (auto *heats : {&in_step, &present, &power}) heats->assign(n, 0.0);
+  }    ///< sets the length of lists of heat, when options are known
 
   // start of a run
 
@@ -143,6 +178,7 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   int count_stages();
   void find_edges();
   void find_rates() override;
+  void exchange(bool changes, Heats &);
   bool linearize() override;
   void find_changes() override;
   void project(int part, std::vector<double> &change) override;

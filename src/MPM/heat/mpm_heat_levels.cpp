@@ -34,6 +34,7 @@
 #include "error.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_stencil.h"
 #include "heat/mpm_heat_body.h"
 #include "refine/mpm_two_scale.h"
@@ -46,12 +47,9 @@
 
 using namespace LAMMPS_NS;
 
-/* ----------------------------------------------------------------------
-   Materials of different conductivity get means next to their interface where they share a field
-   (MPMLayerMean), but not where the rim between two lattices is at the interface. Does this occur
-   on this rank, with points of both in cells of the coarse lattice that touch?
-------------------------------------------------------------------------- */
-
+/** Materials of different conductivity get means next to their interface where they share a field
+ *  (MPMLayerMean), but not where the rim between two lattices is at the interface. Does this occur
+ *  on this rank, with points of both in cells of the coarse lattice that touch? */
 static bool has_layers_at_rim(const MPMField &coarse, const MPMField &fine)
 {
   static constexpr double DIFFERENT = 1.2;
@@ -109,23 +107,11 @@ MPMHeatLevels::MPMHeatLevels(LAMMPS *lmp, const std::vector<Pair> &list) :
   for (auto *level : levels) level->scalar.is_level = level->faces.is_level = true;
 }
 
-bool MPMHeatLevels::has(const MPMConduction &one) const
-{
-  return std::find(levels.begin(), levels.end(), &one) != levels.end();
-}
-
-const MPMTwoScale *MPMHeatLevels::after(std::size_t k) const
-{
-  return k + 1 < pairs.size() ? pairs[k + 1].nodes : nullptr;
-}
-
 /** Calls f(pair, the pair after it or null), beginning with the finest lattice. */
 template <class F> void MPMHeatLevels::to_parents(const F &f)
 {
   for (std::size_t k = pairs.size(); k-- > 0;) f(pairs[k], after(k));
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMHeatLevels::points_to_nodes(const MPMRows &gradients, bool starts)
 {
@@ -190,11 +176,8 @@ void MPMHeatLevels::rates_from_parents()
     pair.nodes->values_from_parents(pair.coarse->rate, pair.fine->rate);
 }
 
-/* ----------------------------------------------------------------------
-   Sums of mpm_heat_body.cpp, with the points of all lattices that nodes of lines through a face
-   reach
-------------------------------------------------------------------------- */
-
+/** Sums of mpm_heat_body.cpp, with the points of all lattices that nodes of lines through a face
+ *  reach. */
 void MPMHeatLevels::find_surface()
 {
   if (!pairs[0].coarse_surface) return;
@@ -208,16 +191,15 @@ void MPMHeatLevels::find_surface()
     surface.share.assign(field.grid.nnodes(), 0.0);
     surface.gradient.assign(3 * field.grid.nnodes(), 0.0);
     const MPMStencil stencil(field);
-    for (const auto &run : field.map->runs)
-      for (int i = run.first; i < run.last; i++) {
-        const double *const place = frame.places()[i];
-        if (!faces.is_near(place, reach)) continue;
-        const double V = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(place[0]);
-        stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-          surface.share[node.number] += inverse * V * node.weight;
-          for (int d = 0; d < 3; d++) surface.gradient[3 * node.number + d] += V * node.gradient[d];
-        });
-      }
+    each_point(field, [&](const auto &run, int i) {
+      const double *const place = frame.places()[i];
+      if (!faces.is_near(place, reach)) return;
+      const double V = field.atom->vfrac[i] * frame.lattice_jacobian(i) / frame.circle(place[0]);
+      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+        surface.share[node.number] += inverse * V * node.weight;
+        for (int d = 0; d < 3; d++) surface.gradient[3 * node.number + d] += V * node.gradient[d];
+      });
+    });
   };
   add(*pairs[0].coarse_surface);
   for (const auto &pair : pairs) add(*pair.fine_surface);

@@ -11,7 +11,6 @@
 
 #include "heat/mpm_conduction.h"
 
-#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -33,7 +32,10 @@ class MPMHeatLevels : protected Pointers {
   MPMHeatLevels(class LAMMPS *, const std::vector<Pair> &);
 
   /** Is this one of the lattices? */
-  bool has(const MPMConduction &) const;
+  bool has(const MPMConduction &one) const
+  {
+    return std::find(levels.begin(), levels.end(), &one) != levels.end();
+  }
   /** Finds the temperatures of the nodes of all lattices. Collective. Returns the bound of the
    *  rates on this rank, as MPMConduction::points_to_nodes() does for one lattice. */
   double points_to_nodes(const MPMRows &gradients, bool starts);
@@ -54,7 +56,10 @@ class MPMHeatLevels : protected Pointers {
   std::vector<MPMConduction *> levels;    // from the coarsest to the finest
   bool warned = false;
 
-  const MPMTwoScale *after(std::size_t k) const;
+  const MPMTwoScale *after(std::size_t k) const
+  {
+    return k + 1 < pairs.size() ? pairs[k + 1].nodes : nullptr;
+  }
   template <class F> void to_parents(const F &);
   double bound_by_rows();
 };

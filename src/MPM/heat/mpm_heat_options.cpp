@@ -6,27 +6,25 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "heat/mpm_heat_options.h"
+#include "heat/mpm_heat_flow.h"
 
 #include "base/mpm_options.h"
-
-#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 const char *const MPMHeatOptions::FACE_NAME[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/heat keyword values ...
-------------------------------------------------------------------------- */
-
+/** fix ID all mpm/heat keyword values ... */
 Options MPMHeatOptions::declare(int dim)
 {
   using namespace option;
   using Condition = MPMHeatCondition;
   Options o("fix mpm/heat");
-  const auto words = [](Condition &c, const std::string &where) {
+  const auto with = [](const char *name, int kind, const OptionValue &value) {
+    return OptionWord{name, kind, "", {value}};
+  };
+  const auto words = [with](Condition &c, const std::string &where) {
     const auto values = [&c](int n, const std::string &names, const std::string &unit,
                              const std::string &meaning, int first = 0) {
       return variables(c.value + first, n, names, unit, meaning + ", can be a variable");
@@ -35,15 +33,11 @@ Options MPMHeatOptions::declare(int dim)
     return word(
         c.kind,
         {{"insulated", Condition::INSULATED, "no heat goes through " + where},
-         {"temperature",
-          Condition::TEMPERATURE,
-          "",
-          {values(1, "T", "temperature", "temperature of the material there")}},
-         {"flux",
-          Condition::FLUX,
-          "",
-          {values(1, "q", "power/area",
-                  "heat that flows into the material there, per area and time")}},
+         with("temperature", Condition::TEMPERATURE,
+              values(1, "T", "temperature", "temperature of the material there")),
+         with("flux", Condition::FLUX,
+              values(1, "q", "power/area",
+                     "heat that flows into the material there, per area and time")),
          {"convection",
           Condition::CONVECTION,
           "",
@@ -71,22 +65,20 @@ Options MPMHeatOptions::declare(int dim)
         surface = {};
       });
   enum { CONDUCTANCE };
-  o.add(
-       "contact",
-       {text(pair.field[0], "F1",
-             "IDs of the fix mpm of two bodies that exchange heat where they touch"),
-        text(pair.field[1], "F2"),
-        word(
-            [] {
-              return (int) CONDUCTANCE;
-            },
-            [](int) {
-            },
-            {{"conductance",
-              CONDUCTANCE,
-              "",
-              {variables(&pair.conductance, 1, "H", "power/(area temperature)",
-                         "heat per area, time, and temperature difference, can be a variable")}}})})
+  o.add("contact",
+        {text(pair.field[0], "F1",
+              "IDs of the fix mpm of two bodies that exchange heat where they touch"),
+         text(pair.field[1], "F2"),
+         word(
+             [] {
+               return (int) CONDUCTANCE;
+             },
+             [](int) {
+             },
+             {with("conductance", CONDUCTANCE,
+                   variables(&pair.conductance, 1, "H", "power/(area temperature)",
+                             "heat per area, time, and temperature difference, can be a "
+                             "variable"))})})
       .standard("none")
       .then([this] {
         pairs.push_back(pair);
@@ -187,24 +179,21 @@ Options MPMHeatOptions::declare(int dim)
   return o;
 }
 
-bool MPMHeatOptions::radiates() const
+bool MPMHeatOptions::radiates()
 {
-  const auto does = [](const MPMHeatCondition &c) {
-    return c.kind == MPMHeatCondition::RADIATION;
-  };
-  return std::any_of(conditions, conditions + MPMHeatFaces::NFACE, does) ||
-      std::any_of(surfaces.begin(), surfaces.end(), [&](const auto &s) {
-           return does(s.condition);
-         });
+  bool any = false;
+  each_condition([&](const MPMHeatCondition &c, const std::string &) {
+    any = any || c.kind == MPMHeatCondition::RADIATION;
+  });
+  return any;
 }
 
-bool MPMHeatOptions::has_variables() const
+bool MPMHeatOptions::has_variables()
 {
   bool any = !source.empty();
-  for (const auto &c : conditions)
+  each_condition([&](const MPMHeatCondition &c, const std::string &) {
     for (int k = 0; k < c.nvalue(); k++) any = any || !c.value[k].variable.empty();
-  for (const auto &[region, c] : surfaces)
-    for (int k = 0; k < c.nvalue(); k++) any = any || !c.value[k].variable.empty();
+  });
   for (const auto &p : pairs) any = any || !p.conductance.variable.empty();
   return any;
 }

@@ -14,7 +14,7 @@
 
    With the power P = f (T_out - T) of a line, f = area * coefficient, T would follow the
    temperature outside with the rate r = f R/s, where R is its response to heat and s the share of
-   the area that the line has. As in mpm_heat_contact.cpp, this rate is limited to l: where r is
+   the area that the line has. As for contacts, this rate is limited to l: where r is
    larger,
 
      P = (l/r) f (T_out - T) - (1 - l/r) s D/R,   D: rate of T by all other heat,
@@ -36,7 +36,8 @@
 #include "comm.h"
 #include "domain.h"
 #include "field/mpm_field.h"
-#include "heat/mpm_heat_thin.h"
+#include "heat/mpm_conduction.h"
+#include "heat/mpm_heat_body.h"
 #include "math_extra.h"
 #include "region.h"
 
@@ -50,14 +51,12 @@ using namespace MPM_NS;
 static constexpr double FAR = 4.0;    // node spacings: larger distances from regions are not needed
 // free surfaces this near to a region, in node spacings, are not free
 static constexpr double COVERED = 0.5;
-static constexpr double ALL_ROOM = 0.999;
+static constexpr double ALL_IN_BOX = 0.999;
 static constexpr int INSIDE = 3;                // nodes inwards that show how full a body is
 static constexpr double LEAST_FILLED = 0.02;    // least fullness of a line with a surface
-static constexpr double LEAST_ROOM = 0.02;    // least room of a line of nodes at a face of the box
+static constexpr double LEAST_IN_BOX = 0.02;    // least share of a line of nodes inside of the box
 // shares of other bodies at a free surface up to which it is open, and from which on it is hidden
 static constexpr double OPEN = 0.15, HIDDEN = 0.4;
-
-/* ---------------------------------------------------------------------- */
 
 MPMHeatSurfaces::MPMHeatSurfaces(LAMMPS *lmp, MPMHeatBody &body, const Conditions &conditions,
                                  double sigma) :
@@ -99,29 +98,17 @@ void MPMHeatSurfaces::extend_topology()
   // points reach
   const bool all = has_free && comm->nprocs > 1;
   if (!all && walls.empty()) return;
-  const auto &blocks = body.field.grid.blocks;
-  const auto nblocks = (int) blocks.size();
   for (auto &wall : walls)
     if (!wall.moves()) wall.region->prematch();
-  for (int ib = 0; ib < nblocks; ib++) {
-    const int b[3] = {blocks[ib].b[0], blocks[ib].b[1], blocks[ib].b[2]};
+  activate_blocks_around(body.field, [&](const int *b) {
     // a moving region may come here before blocks are found again
-    if (all || std::any_of(walls.begin(), walls.end(), [&](Wall &wall) {
-          return wall.moves() || near_wall(wall, b);
-        }))
-      body.activate_around(b);
-  }
+    return all || std::any_of(walls.begin(), walls.end(), [&](Wall &wall) {
+             return wall.moves() || near_wall(wall, b);
+           });
+  });
 }
 
-void MPMHeatSurfaces::topology_changed()
-{
-  for (auto &wall : walls) wall.distance.clear();
-}
-
-/* ----------------------------------------------------------------------
-   Also finds the distances of nodes from regions.
-------------------------------------------------------------------------- */
-
+/** Also finds the distances of nodes from regions. */
 void MPMHeatSurfaces::mark_near()
 {
   const Grid &grid = body.field.grid;
@@ -151,11 +138,8 @@ void MPMHeatSurfaces::mark_near()
   if (has_free) body.want_all();
 }
 
-/* ----------------------------------------------------------------------
-   Calls f(axis, index, node, next) for pairs of neighbors, none of them a periodic image; next: -1
-   if it has no block.
-------------------------------------------------------------------------- */
-
+/** Calls f(axis, index, node, next) for pairs of neighbors, none of them a periodic image; next: -1
+ *  if it has no block. */
 template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
 {
   const Grid &grid = body.field.grid;
@@ -177,10 +161,7 @@ template <class F> void MPMHeatSurfaces::each_pair(const F &f) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   Surface of a region: material is where the distance is not negative
-------------------------------------------------------------------------- */
-
+/** Surface of a region: material is where the distance is not negative. */
 void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
 {
   const auto &lattice = body.field.lattice;
@@ -205,7 +186,7 @@ void MPMHeatSurfaces::find_wall(int condition, Wall &wall, MPMHeatThin *thin)
     std::copy_n(into, 3, place.into);
     place.condition = condition;
     place.key = node * lattice.dim + a;
-    if (thin) look_behind(*thin, place, index, part, into);
+    if (thin) thin->take(condition, body, index, a, part, into, place.area);
     keep(place, index);
   });
 }
@@ -228,21 +209,13 @@ void MPMHeatSurfaces::keep(const Place &whole, const int *index)
   }
 }
 
-void MPMHeatSurfaces::look_behind(MPMHeatThin &thin, const Place &place, const int *index,
-                                  double part, const double *into) const
-{
-  double at[3] = {(double) index[0], (double) index[1], (double) index[2]};
-  at[place.line.axis] += part;
-  thin.take(place.condition, body, at, into, place.area);
-}
-
 /** Share of the volume of a node that fixed faces of the box leave. */
 double MPMHeatSurfaces::volume_fraction(int64_t node) const
 {
   int index[3];
   body.field.grid.node_index(node, index);
   double fraction = 1.0;
-  for (int d = 0; d < body.field.lattice.dim; d++) fraction *= body.room(d, index[d]);
+  for (int d = 0; d < body.field.lattice.dim; d++) fraction *= body.fraction_in_box(d, index[d]);
   return fraction;
 }
 
@@ -258,12 +231,9 @@ void MPMHeatSurfaces::find_filled()
   body.field.nodes.complete(filled.data(), 1, 1);
 }
 
-/* ----------------------------------------------------------------------
-   The rank that counts a node of a neighbor has points of the neighbor there, and hence, in reach
-   of this body, also the node of this body. Other ranks may have only the node of this body, and
-   get the share of the neighbor from that rank.
-------------------------------------------------------------------------- */
-
+/** The rank that counts a node of a neighbor has points of the neighbor there, and hence, in reach
+ *  of this body, also the node of this body. Other ranks may have only the node of this body, and
+ *  get the share of the neighbor from that rank. */
 void MPMHeatSurfaces::find_covered()
 {
   if (neighbors.empty()) return;
@@ -288,10 +258,7 @@ void MPMHeatSurfaces::find_covered()
   body.field.nodes.complete(covered.data(), 1, 1);
 }
 
-/* ----------------------------------------------------------------------
-   Free surfaces: where half of the volume of a node that is inside of the box is filled
-------------------------------------------------------------------------- */
-
+/** Free surfaces: where half of the volume of a node that is inside of the box is filled. */
 void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
 {
   const Grid &grid = body.field.grid;
@@ -340,8 +307,8 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
     x[a] += part * h;
     if (!lattice.periodic[a] && (x[a] < domain->boxlo[a] || x[a] > domain->boxhi[a])) return;
     for (int d = 0; d < dim; d++)
-      if (d != a) side *= body.room(d, index[d]);
-    if (side < LEAST_ROOM) return;
+      if (d != a) side *= body.fraction_in_box(d, index[d]);
+    if (side < LEAST_IN_BOX) return;
     for (int k = 0; k < 2; k++) {
       int here_k[3] = {index[0], index[1], index[2]};
       here_k[a] += k;
@@ -352,7 +319,7 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
         up[d]++;
         down[d]--;
         // a body that touches a face of the box has no free surface there
-        if (body.room(d, here_k[d]) < ALL_ROOM)
+        if (body.fraction_in_box(d, here_k[d]) < ALL_IN_BOX)
           into[d] += weight * 0.5 * (at(up) - at(down));
         else if (which >= 0)
           into[d] -= weight * body.gradient[3 * which + d] * h / cell;
@@ -378,12 +345,10 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
     std::copy_n(into, 3, place.into);
     place.condition = condition;
     place.key = node * dim + a;
-    if (thin) look_behind(*thin, place, index, part, into);
+    if (thin) thin->take(condition, body, index, a, part, into, place.area);
     keep(place, index);
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMHeatSurfaces::find_lines(MPMHeatThin *thin)
 {
@@ -397,14 +362,7 @@ void MPMHeatSurfaces::find_lines(MPMHeatThin *thin)
       find_free(k, thin);
     else
       find_wall(k, walls[wall_of[k]], thin);
-    if (comm->nprocs == 1) continue;
-    shares.begin(body);
-    for (std::size_t l = begin; l < places.size(); l++) shares.count(places[l].key);
-    shares.sum(body);
-    for (std::size_t l = begin; l < places.size(); l++) {
-      places[l].share *= shares.of(places[l].key);
-      places[l].area *= shares.of(places[l].key);
-    }
+    divide_among_ranks(body, places.data() + begin, places.data() + places.size(), counts);
   }
 }
 
@@ -468,17 +426,6 @@ void MPMHeatSurfaces::each_term(const MPMDiffusion::Term &use) const
   }
 }
 
-void MPMHeatSurfaces::exchange(double *power) const
-{
-  exchange(false, power);
-}
-
-void MPMHeatSurfaces::exchange_changes() const
-{
-  std::vector<double> power(conditions.size());
-  exchange(true, power.data());
-}
-
 void MPMHeatSurfaces::exchange(bool changes, double *power) const
 {
   for (const auto &place : places) {
@@ -508,4 +455,219 @@ double MPMHeatSurfaces::memory_usage() const
       places.capacity() * sizeof(Place) + (filled.capacity() + covered.capacity()) * sizeof(double);
   for (const auto &wall : walls) bytes += wall.distance.capacity() * sizeof(double);
   return bytes;
+}
+
+/* ----------------------------------------------------------------------
+   Where both bodies have the same share of the volume of a node along a line of nodes, their
+   surfaces are next to each other. Each has its own weights there (mpm_heat_body.cpp), which also
+   show the distance of its surface. The area is the smaller one of the two, so that a small body on
+   a large one exchanges heat through its own area.
+
+   The exchange at such a place, with the temperatures T_a, T_b of both surfaces, their responses R
+   to heat, the rates D of their temperatures by all other heat, and the area A of which the line
+   has the share s,
+
+     d(T_a - T_b)/dt = D_a - D_b - r (T_a - T_b),   r = h_c A (R_a + R_b)/s,
+
+   is stiff for a large h_c: then T_a - T_b follows D_a - D_b at once. Hence the difference of T_a -
+   T_b from (D_a - D_b)/r is made to decay with the rate l = min(r, limit) instead of r:
+
+     P = (l/r) h_c A (T_a - T_b) + (1 - l/r) s (D_a - D_b)/(R_a + R_b)
+
+   is the power from a to b. It is h_c A (T_a - T_b) if r is below the limit, and in any case when
+   nothing changes, and tends to perfect contact with h_c. With the projections Pi to the
+   differences (in the norm of capacities, in which conduction is symmetric), and S = 1 - sum (1 -
+   l/r) s Pi, the matrix of all rates is S K - sum l s Pi = S (K - sum r s Pi'), similar to a
+   symmetric one whose eigenvalues are not below those of the conduction K less the limit: steps
+   that are stable with the sum of both are stable whatever h_c is.
+------------------------------------------------------------------------- */
+
+MPMHeatContact::MPMHeatContact(LAMMPS *lmp, MPMHeatBody &a, MPMHeatBody &b,
+                               const MPMHeatPair &pair) :
+    Pointers(lmp),
+    body{&a, &b}, pair(pair)
+{
+}
+
+void MPMHeatContact::extend_topology(const MPMField &field)
+{
+  if (comm->nprocs == 1) return;
+  for (auto *one : body)
+    if (&one->field == &field) activate_blocks_around(one->field);
+}
+
+void MPMHeatContact::list_common_blocks()
+{
+  common.clear();
+  const Grid &first = body[0]->field.grid, &second = body[1]->field.grid;
+  for (std::size_t slot = 0; slot < first.blocks.size(); slot++) {
+    const auto &block = first.blocks[slot];
+    const int other = second.find(block.b);
+    if (other >= 0) common.push_back({{(int) slot, other}, ~block.alias});
+  }
+  listed = true;
+}
+
+void MPMHeatContact::mark_near()
+{
+  if (!listed) list_common_blocks();
+  const auto has_mass = [&](int k, int slot, int n) {
+    return body[k]->field.grid.record(slot, n)[3] > 0.0;
+  };
+  for (const auto &c : common)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(c.canonical >> n & 1) || !has_mass(0, c.slot[0], n) || !has_mass(1, c.slot[1], n))
+        continue;
+      for (int k = 0; k < 2; k++)
+        for (const int next : body[k]->field.grid.blocks[c.slot[k]].slot)
+          if (next >= 0) body[k]->near[next] = 1;
+      break;
+    }
+}
+
+/** Finds a contact between the nodes a (of the first body) and b, next to it along an axis. */
+bool MPMHeatContact::make_place(int axis, const int *index, int64_t a, int64_t b, Place &place,
+                                MPMHeatThin *thin, int entry) const
+{
+  const auto &lattice = body[0]->field.lattice;
+  int next[3] = {index[0], index[1], index[2]};
+  next[axis] = lattice.wrap(axis, next[axis] + 1);
+  const int64_t here[2] = {a, body[1]->field.grid.locate(index)};
+  const int64_t there[2] = {b, body[1]->field.grid.locate(next)};
+  if (here[1] < 0 || there[0] < 0 || there[1] < 0) return false;
+  double more[2] = {0.0, 0.0};
+  for (int k = 0; k < 2; k++) {
+    const double sign = k ? -1.0 : 1.0;
+    more[0] += sign * body[k]->share[here[k]];
+    more[1] += sign * body[k]->share[there[k]];
+  }
+  if ((more[0] < 0.0) == (more[1] < 0.0)) return false;
+  const double part = more[0] / (more[0] - more[1]);
+  double normal[3] = {0.0, 0.0, 0.0};    // from the first body to the second one
+  for (int d = 0; d < lattice.dim; d++)
+    for (int k = 0; k < 2; k++) {
+      const double sign = k ? -1.0 : 1.0;
+      normal[d] += sign *
+          ((1.0 - part) * body[k]->gradient[3 * here[k] + d] +
+           part * body[k]->gradient[3 * there[k] + d]);
+    }
+  const double length = MathExtra::len3(normal);
+  if (!(length > 0.0)) return false;
+  for (double &x : normal) x /= length;
+  place.share = heat_share_of_axis(normal, lattice.dim, axis);
+  if (place.share == 0.0) return false;
+  const double back[3] = {-normal[0], -normal[1], -normal[2]};
+  for (int k = 0; k < 2; k++)
+    if (!body[k]->make_line(axis, index, index[axis] + part, k ? normal : back, place.line[k]))
+      return false;
+  const double gap = (place.line[1].place - place.line[0].place) * normal[axis];
+  const double near = body[0]->touches(gap);
+  if (!(near > 0.0)) return false;
+  place.area = place.share * near * std::min(place.line[0].area, place.line[1].area) /
+      std::fabs(normal[axis]);
+  std::copy_n(normal, 3, place.normal);
+  place.key = a * lattice.dim + axis;
+  for (int k = 0; thin && k < 2; k++)
+    thin->take(entry, *body[k], index, axis, part, k ? normal : back, place.area);
+  return true;
+}
+
+void MPMHeatContact::find_contacts(MPMHeatThin *thin, int entry)
+{
+  places.clear();
+  const Grid &grid = body[0]->field.grid;
+  for (const auto &c : common)
+    for (int n = 0; body[0]->near[c.slot[0]] && n < NODES_PER_BLOCK; n++) {
+      if (!(c.canonical >> n & 1)) continue;
+      const auto &block = grid.blocks[c.slot[0]];
+      int index[3];
+      grid.node_index(block, n, index);
+      for (int a = 0; a < grid.lattice.dim; a++) {
+        int next[3] = {index[0], index[1], index[2]};
+        next[a] = grid.lattice.wrap(a, next[a] + 1);
+        Place place;
+        if (make_place(a, index, (int64_t) c.slot[0] * NODES_PER_BLOCK + n, grid.locate(next),
+                       place, thin, entry))
+          places.push_back(place);
+      }
+    }
+  divide_among_ranks(*body[0], places.data(), places.data() + places.size(), counts);
+}
+
+double MPMHeatContact::begin_step()
+{
+  double most = 0.0;
+  for (auto &place : places) {
+    place.rate = 0.0;
+    if (!body[0]->find_response(place.line[0]) || !body[1]->find_response(place.line[1])) continue;
+    const double conducting = std::min(place.line[0].conducting, place.line[1].conducting);
+    place.area *= conducting;
+    place.share *= conducting;
+    place.response = place.line[0].response + place.line[1].response;
+    place.rate = pair.now * place.area * place.response / place.share;
+    most = std::max(most, place.rate);
+  }
+  return most;
+}
+
+void MPMHeatContact::note_edges() const
+{
+  for (const auto &place : places) {
+    if (!(place.rate > 0.0)) continue;
+    double into[3];
+    for (int k = 0; k < 2; k++) {
+      for (int d = 0; d < 3; d++) into[d] = k ? place.normal[d] : -place.normal[d];
+      body[k]->note(place.line[k], into, place.share);
+    }
+  }
+}
+
+void MPMHeatContact::limit(double cap)
+{
+  fastest = cap;
+  const double conduction =
+      std::min(body[0]->conduction->bound_of_rates(), body[1]->conduction->bound_of_rates());
+  for (auto &place : places) {
+    if (!(place.rate > conduction)) continue;
+    if (!body[0]->is_edge(place.line[0]) && !body[1]->is_edge(place.line[1])) continue;
+    place.area *= conduction / place.rate;
+    place.rate = conduction;
+  }
+}
+
+bool MPMHeatContact::is_symmetric() const
+{
+  for (const auto &place : places)
+    if (place.rate > fastest) return false;
+  return true;
+}
+
+void MPMHeatContact::each_term(const MPMHeatBody &of, const MPMDiffusion::Term &use) const
+{
+  for (const auto &place : places) {
+    if (!(place.rate > 0.0)) continue;
+    const auto &line = place.line[body[1] == &of];
+    const double stiffness = std::min(1.0, fastest / place.rate) * pair.now * place.area;
+    line.add_term(stiffness, use);
+  }
+}
+
+void MPMHeatContact::exchange(double &power) const
+{
+  for (const auto &place : places) {
+    if (!(place.rate > 0.0)) continue;
+    const auto &[a, b] = place.line;
+    const double slower = std::min(1.0, fastest / place.rate);
+    double P = slower * pair.now * place.area * (body[0]->temperature(a) - body[1]->temperature(b));
+    if (slower < 1.0)
+      P += (1.0 - slower) * place.share * (body[0]->drift(a) - body[1]->drift(b)) / place.response;
+    body[0]->give(a, -P);
+    body[1]->give(b, P);
+    power += P;
+  }
+}
+
+double MPMHeatContact::memory_usage() const
+{
+  return places.capacity() * sizeof(Place) + common.capacity() * sizeof(Common);
 }

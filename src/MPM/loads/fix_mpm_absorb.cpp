@@ -28,10 +28,7 @@ using namespace LAMMPS_NS;
 using namespace FixConst;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/absorb region REG keyword value ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/absorb region REG keyword value ... */
 Options MPMAbsorbOptions::declare()
 {
   using namespace option;
@@ -70,11 +67,6 @@ FixMPMAbsorb::FixMPMAbsorb(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
-}
-
-int FixMPMAbsorb::setmask()
-{
-  return POST_INTEGRATE | PRE_EXCHANGE;
 }
 
 void FixMPMAbsorb::init()
@@ -116,10 +108,7 @@ double FixMPMAbsorb::heat_of(int i) const
   return atom->rmass[i] * heat_since_start(*fix->material, fix->history[i]);
 }
 
-/* ----------------------------------------------------------------------
-   the points go with the exchange of this step
-------------------------------------------------------------------------- */
-
+/** The points go with the exchange of this step. */
 void FixMPMAbsorb::post_integrate()
 {
   waited += update->dt;
@@ -154,8 +143,6 @@ void FixMPMAbsorb::pre_exchange()
   waited = 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMAbsorb::write_restart(FILE *fp)
 {
   if (comm->me) return;
@@ -176,11 +163,8 @@ void FixMPMAbsorb::restart(char *buf)
   heat = list[MPMTraffic::NREAL + 2];
 }
 
-/* ----------------------------------------------------------------------
-   scalar: mass that has gone; vector: points, mass, momentum, kinetic and stored energy of these,
-   mass per time, and heat
-------------------------------------------------------------------------- */
-
+/** scalar: mass that has gone; vector: points, mass, momentum, kinetic and stored energy of these,
+ *  mass per time, and heat. */
 double FixMPMAbsorb::compute_vector(int k)
 {
   if (k < MPMTraffic::NREAL) return total.reals()[k];

@@ -38,7 +38,7 @@ struct MPMAbsorbOptions {
 class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
  public:
   FixMPMAbsorb(class LAMMPS *, int, char **);
-  int setmask() override;
+  int setmask() override { return FixConst::POST_INTEGRATE | FixConst::PRE_EXCHANGE; }
   void init() override;
   void post_integrate() override;
   void pre_exchange() override;

@@ -47,10 +47,7 @@ using namespace MPM_NS;
 static constexpr double ONE_LAYER =
     0.25;    // of the distance of points: these are in the same layer
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/column fix-ID x|y|z
-------------------------------------------------------------------------- */
-
+/** fix ID all mpm/column fix-ID x|y|z. */
 FixMPMColumn::FixMPMColumn(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   using namespace option;
@@ -98,20 +95,12 @@ void FixMPMColumn::init_action()
   fresh = true;
 }
 
-/* ----------------------------------------------------------------------
-   the stress at the start of each step, by layers of points
-------------------------------------------------------------------------- */
-
+/** The stress at the start of each step, by layers of points. */
 void FixMPMColumn::setup(int)
 {
   find_layers();
   if (layers.empty())
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/column {}: fix mpm {} has no points", id, of);
-}
-
-void FixMPMColumn::post_force(int)
-{
-  find_layers();
 }
 
 void FixMPMColumn::find_layers()
@@ -180,15 +169,6 @@ void FixMPMColumn::stress(double height, double sigma[6]) const
   const double distance = high.height - low.height;
   const double t = distance > 0.0 ? std::clamp((height - low.height) / distance, -0.5, 1.5) : 0.0;
   for (int c = 0; c < 6; c++) sigma[c] = low.sigma[c] + t * (high.sigma[c] - low.sigma[c]);
-}
-
-/* ----------------------------------------------------------------------
-   planes of nodes
-------------------------------------------------------------------------- */
-
-void FixMPMColumn::topology_changed(MPMField &which)
-{
-  if (&which == field) fresh = true;
 }
 
 /** Those of the blocks of all ranks. */
@@ -270,8 +250,6 @@ void FixMPMColumn::motion(double height, double old[3], double change[3]) const
     change[d] = mass > 0.0 ? sum[d] / mass - old[d] : 0.0;
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixMPMColumn::memory_usage()
 {

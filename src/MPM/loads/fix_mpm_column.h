@@ -32,14 +32,18 @@ class FixMPMColumn : public Fix, public MPMNodeAction {
   int setmask() override { return FixConst::POST_FORCE; }
   void init() override;
   void setup(int) override;
-  void post_force(int) override;
+  void post_force(int) override { find_layers(); }
   double memory_usage() override;
 
   Turn turn() const override { return PHASES; }    // before walls, which may shake it
   void init_action() override;
   bool looks_beyond_points() const override { return false; }
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override { return false; }
-  void topology_changed(MPMField &) override;
+  /** Planes of nodes. */
+  void topology_changed(MPMField &which) override
+  {
+    if (&which == field) fresh = true;
+  }
   void act(double, Stage stage) override { level(stage); }
   void has_acted(MPMNodeAction &, Stage stage) override { level(stage); }
 

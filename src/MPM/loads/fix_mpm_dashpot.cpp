@@ -17,42 +17,38 @@
    incoming wave: W.B. Joyner, A.T.F. Chen, Bull. Seismol. Soc. Am. 65 (1975) 1315).
 
    Marks. The velocity must be that on the surface: a dashpot half a spacing of points below it
-   reflects k s/4 of a wave of the wave number k, as the layer in front of it is a mass. Each point
-   of the first two layers, with shares of the area hat(depth - 1) that sum to one wherever the
-   layers are, has a mark at its foot on the surface. The mark sees v = sum_i w_i v_i of the nodes
-   around it, and its impulse P goes to these with the same w_i, so that the dashpots only take
-   energy. The weights are the functions of the lattice there. Nodes beyond the surface that points
-   hardly reach would fly off: those on which dashpots would act faster than FASTEST get less, and
-   the others so much more that the sum of w_i is one and that of w_i x_i stays at the mark.
+   reflects k s/4 of a wave of the wave number k. Each point of the first two layers, with shares of
+   the area hat(depth - 1) that sum to one wherever the layers are, has a mark at its foot on the
+   surface. The mark sees v = sum_i w_i v_i of the nodes around it, and its impulse P goes to these
+   with the same w_i, so that the dashpots only take energy. The weights are the functions of the
+   lattice there, less at nodes on which dashpots would act faster than FASTEST, which points hardly
+   reach; the others have so much more that the sum of w_i is one and that of w_i x_i stays at the
+   mark.
 
    Time. With a = dt w M^-1 w A Z a dashpot alone on its nodes obeys du/ds = -a (u - b) + D within a
    step, s from 0 to 1, from the old velocity u_0 at the mark on. D is what forces change in the
    step, and b = 2 v_in. Its mean over the step, phi u_0 + (1 - phi)/a D + (1 - phi) b with phi = (1
    - exp(-a))/a, times A dt Z is what the dashpot takes. This is of second order in the time step,
    has the right state at rest, and damps for any step. Marks share nodes: a is that of a wave which
-   all of them see, by the sums of A Z at the nodes. As none of these is negative, no wave has a
-   larger one.
+   all of them see, by the sums of A Z at the nodes; no wave has a larger one.
 
    The static support is a dead load with the stress at the start, which is put on the layers of
-   points as that of fix mpm/traction. The stress of points next to a face is not quite what nodes
-   bear there (0.3 % of the weight of 20 cells), and that would move the body with a constant
-   velocity. What nodes next to the surface lack in the first step so as not to be accelerated is a
-   part of the support, too, at the marks.
+   points as that of fix mpm/traction. What nodes next to the surface lack in the first step so as
+   not to be accelerated is a part of the support, too, at the marks: otherwise it would move the
+   body with a constant velocity.
 
    A free field. Where the far side is level ground that is shaken, too, it is a column (fix
    mpm/column), and v is the velocity relative to it, at the same height, and t_0 changes by what
-   the traction of its stress has changed since the start. Ground that moves like the column feels
-   nothing but the traction that it would have in the middle of level ground.
+   the traction of its stress has changed since the start.
 ------------------------------------------------------------------------- */
 
 #include "loads/fix_mpm_dashpot.h"
 
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
+#include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
-#include "field/mpm_point_map.h"
-#include "field/mpm_stencil.h"
 #include "loads/fix_mpm_column.h"
 #include "loads/mpm_face.h"
 #include "math/matrix.h"
@@ -77,8 +73,11 @@ using Data = MPMStageData;    // what stages read and write
 // there tell, and dashpots must not pull more
 static constexpr double FASTEST = 20.0, FASTEST_MLS = 6.0;
 
-static constexpr int DEPTH =
-    3;    // cells below the surface whose nodes count for what the support lacks
+// of a symmetric tensor, xx yy zz xy xz yz
+static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
+
+// cells below the surface whose nodes count for what the support lacks
+static constexpr int DEPTH = 3;
 
 static constexpr double UPRIGHT = 1.0e-3;    // slope of a surface at the side of a column
 
@@ -175,10 +174,7 @@ FixMPMDashpot::Body &FixMPMDashpot::body_of(const MPMField &field)
   });
 }
 
-/* ----------------------------------------------------------------------
-   what this run starts with: the surface, where points are now, and the stress that it bears
-------------------------------------------------------------------------- */
-
+/** What this run starts with: the surface, where points are now, and the stress that it bears. */
 void FixMPMDashpot::setup(int vflag)
 {
   if (!defined) define();
@@ -261,11 +257,8 @@ void FixMPMDashpot::define()
                    all[1]);
 }
 
-/* ----------------------------------------------------------------------
-   the same face of a point under two of these would have twice the resistance, which sends waves
-   back: (1 - 2)/(1 + 2) of them
-------------------------------------------------------------------------- */
-
+/** The same face of a point under two of these would have twice the resistance, which sends waves
+ *  back: (1 - 2)/(1 + 2) of them. */
 void FixMPMDashpot::warn_about_others() const
 {
   constexpr double SAME_SIDE = 0.9, MUCH = 0.05;    // cosine of normals; of the smaller area
@@ -290,9 +283,7 @@ void FixMPMDashpot::warn_about_others() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   the column at the far side
-------------------------------------------------------------------------- */
+// The column at the far side.
 
 /** lowest, highest: points of the surface; steepest: largest cosine between its normal and the
  *  column. */
@@ -327,10 +318,7 @@ void FixMPMDashpot::column_traction(int i, double t[3]) const
   for (int d = 0; d < 3; d++) t[d] = d < domain->dimension ? t[d] / force->nktv2p : 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   blocks around marks: points of other ranks may be the only ones that reach these
-------------------------------------------------------------------------- */
-
+/** Blocks around marks: points of other ranks may be the only ones that reach these. */
 template <class F> void FixMPMDashpot::visit_marks(const Body &body, const F &f) const
 {
   const auto places = body.field->frame->places();
@@ -346,26 +334,15 @@ void FixMPMDashpot::extend_topology(MPMField &field)
 {
   Body &body = body_of(field);
   Grid &grid = field.grid;
-  const auto &lattice = field.lattice;
-  const MPMStencil stencil(field);
   body.points.clear();
   for (int i = 0; i < atom->nlocal; i++)
     if (rows[i][AREA] > 0.0 && field.is_point(i)) body.points.push_back(i);
   body.blocks.clear();
+  // points may move by a cell before blocks are renewed
   visit_marks(body, [&](int, const double *x) {
-    int low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, b[3];
-    for (int d = 0; d < lattice.dim; d++) {
-      double w[4];
-      const int n = stencil.weights((x[d] - lattice.origin[d]) / lattice.h, low[d], w);
-      // points may move by a cell before blocks are renewed
-      const int more = fresh ? 1 + DEPTH : 1;
-      high[d] = (low[d] + n - 1 + more) >> grid.shift_bits;
-      low[d] = (low[d] - more) >> grid.shift_bits;
-    }
-    for (b[0] = low[0]; b[0] <= high[0]; b[0]++)
-      for (b[1] = low[1]; b[1] <= high[1]; b[1]++)
-        for (b[2] = low[2]; b[2] <= high[2]; b[2]++)
-          body.blocks.push_back(Grid::block_key(grid.blocks[grid.activate(b)]));
+    blocks_around(field, x, 0.0, fresh ? 1 + DEPTH : 1, [&](const int *b) {
+      body.blocks.push_back(Grid::block_key(grid.blocks[grid.activate(b)]));
+    });
   });
   std::sort(body.blocks.begin(), body.blocks.end());
   body.blocks.erase(std::unique(body.blocks.begin(), body.blocks.end()), body.blocks.end());
@@ -385,9 +362,9 @@ void FixMPMDashpot::topology_changed(MPMField &field)
   body.canonical = field.grid.canonical();
   body.stressed.clear();
   if (!supports) return;
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++)
-      if (rows[i][STRESS] != 0.0) body.stressed.push_back({i, run.slot});
+  each_point(field, [&](const auto &run, int i) {
+    if (rows[i][STRESS] != 0.0) body.stressed.push_back({i, run.slot});
+  });
 }
 
 void FixMPMDashpot::add_stages(MPMPlan &plan, MPMPlan::Place place)
@@ -403,39 +380,44 @@ void FixMPMDashpot::add_stages(MPMPlan &plan, MPMPlan::Place place)
                 });
 }
 
-/* ---------------------------------------------------------------------- */
-
-void FixMPMDashpot::place_marks(Body &body)
+/** Calls f(node, N, r) for the nodes around a position with their functions N and their vectors
+ *  from it, in node spacings. slot: of the block where the last search began, or -1. */
+template <class F>
+static void visit_nodes(const MPMField &field, const double *x, int &slot, const F &f)
 {
-  const MPMField &field = *body.field;
   const auto &lattice = field.lattice;
   const Grid &grid = field.grid;
   const MPMStencil stencil(field);
-  int slot = -1;    // of the block of the first node
+  int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3], b[3];
+  double t[3] = {0.0, 0.0, 0.0}, w[3][4] = {{1.0}, {1.0}, {1.0}};
+  for (int d = 0; d < lattice.dim; d++) {
+    t[d] = (x[d] - lattice.origin[d]) / lattice.h;
+    count[d] = stencil.weights(t[d], base[d], w[d]);
+  }
+  for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
+  if (slot < 0 || !std::equal(b, b + 3, grid.blocks[slot].b)) slot = grid.find(b);
+  for (k[0] = 0; k[0] < count[0]; k[0]++)
+    for (k[1] = 0; k[1] < count[1]; k[1]++)
+      for (k[2] = 0; k[2] < count[2]; k[2]++) {
+        const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
+        const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]],
+                     r[3] = {index[0] - t[0], index[1] - t[1], index[2] - t[2]};
+        const int64_t node = slot < 0 ? grid.locate(index)
+                                      : grid.locate_near(grid.blocks[slot], index);
+        if (node >= 0 && N > 0.0) f(node, N, r);
+      }
+}
+
+void FixMPMDashpot::place_marks(Body &body)
+{
+  int slot = -1;
   body.marks.clear();
   body.nodes.clear();
   visit_marks(body, [&](int i, const double *x) {
-    int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
-    double t[3] = {0.0, 0.0, 0.0}, w[3][4] = {{1.0}, {1.0}, {1.0}};
-    for (int d = 0; d < lattice.dim; d++) {
-      t[d] = (x[d] - lattice.origin[d]) / lattice.h;
-      count[d] = stencil.weights(t[d], base[d], w[d]);
-    }
     const int first = (int) body.nodes.size();
-    int b[3];
-    for (int d = 0; d < 3; d++) b[d] = base[d] >> grid.shift_bits;
-    if (slot < 0 || !std::equal(b, b + 3, grid.blocks[slot].b)) slot = grid.find(b);
-    for (k[0] = 0; k[0] < count[0]; k[0]++)
-      for (k[1] = 0; k[1] < count[1]; k[1]++)
-        for (k[2] = 0; k[2] < count[2]; k[2]++) {
-          const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
-          const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
-          const int64_t node = slot < 0 ? grid.locate(index)
-                                        : grid.locate_near(grid.blocks[slot], index);
-          if (node < 0 || !(N > 0.0)) continue;
-          body.nodes.push_back(
-              {body.canonical[node], N, N, {index[0] - t[0], index[1] - t[1], index[2] - t[2]}});
-        }
+    visit_nodes(*body.field, x, slot, [&](int64_t node, double N, const double *r) {
+      body.nodes.push_back({body.canonical[node], N, N, {r[0], r[1], r[2]}});
+    });
     body.marks.push_back({i, first, (int) body.nodes.size()});
   });
 }
@@ -444,36 +426,23 @@ void FixMPMDashpot::place_marks(Body &body)
  *  after the other. */
 template <class F> void FixMPMDashpot::visit_below(const Body &body, const F &f) const
 {
-  const MPMField &field = *body.field;
-  const auto &lattice = field.lattice;
-  const MPMStencil stencil(field);
+  const auto &lattice = body.field->lattice;
+  int slot = -1;
   visit_marks(body, [&](int i, const double *x) {
     for (int j = 0; j <= DEPTH; j++) {
-      int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
-      double w[3][4] = {{1.0}, {1.0}, {1.0}};
-      for (int d = 0; d < lattice.dim; d++) {
-        const double y = x[d] - j * lattice.h * rows[i][NORMAL + d];
-        count[d] = stencil.weights((y - lattice.origin[d]) / lattice.h, base[d], w[d]);
-      }
-      for (k[0] = 0; k[0] < count[0]; k[0]++)
-        for (k[1] = 0; k[1] < count[1]; k[1]++)
-          for (k[2] = 0; k[2] < count[2]; k[2]++) {
-            const int index[3] = {base[0] + k[0], base[1] + k[1], base[2] + k[2]};
-            const double N = w[0][k[0]] * w[1][k[1]] * w[2][k[2]];
-            const int64_t node = field.grid.locate(index);
-            if (node >= 0 && N > 0.0) f(i, body.canonical[node], N);
-          }
+      double y[3] = {x[0], x[1], x[2]};
+      for (int d = 0; d < lattice.dim; d++) y[d] -= j * lattice.h * rows[i][NORMAL + d];
+      visit_nodes(*body.field, y, slot, [&](int64_t node, double N, const double *) {
+        f(i, body.canonical[node], N);
+      });
     }
   });
 }
 
-/* ----------------------------------------------------------------------
-   Forces that would accelerate nodes next to the surface in the first step, at rest those that
-   walls had borne but for what the support has on points: each node gives it to the marks that see
-   it, from the surface down, by their functions. Where surfaces of several fixes meet at an edge,
-   the marks of all of them share, or else both would bear it
-------------------------------------------------------------------------- */
-
+/** Forces that would accelerate nodes next to the surface in the first step, at rest those that
+ *  walls had borne but for what the support has on points: each node gives it to the marks that see
+ *  it, from the surface down, by their functions. Where surfaces of several fixes meet at an edge,
+ *  the marks of all of them share, or else both would bear it. */
 void FixMPMDashpot::complete_supports(double dt)
 {
   std::vector<FixMPMDashpot *> all;
@@ -499,13 +468,9 @@ void FixMPMDashpot::complete_supports(double dt)
   for (auto *other : all) other->fresh = false;
 }
 
-/* ----------------------------------------------------------------------
-   sums of A Z at the nodes: xx yy zz xy xz yz, over the mass rates of their velocities
-------------------------------------------------------------------------- */
-
+/** Sums of A Z at the nodes: xx yy zz xy xz yz, over the mass rates of their velocities. */
 void FixMPMDashpot::find_rates(Body &body)
 {
-  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
   const int dim = body.field->lattice.dim;
   body.rates->zero();
   for (const auto &mark : body.marks) {
@@ -522,11 +487,8 @@ void FixMPMDashpot::find_rates(Body &body)
   body.field->nodes.sum(*body.rates);
 }
 
-/* ----------------------------------------------------------------------
-   weights of the nodes of a mark, and a along its normal and in its plane. False where no node can
-   take an impulse
-------------------------------------------------------------------------- */
-
+/** Weights of the nodes of a mark, and a along its normal and in its plane. False where no node can
+ *  take an impulse. */
 bool FixMPMDashpot::weigh(Body &body, const Mark &mark, double dt, double *damping) const
 {
   Grid &grid = body.field->grid;
@@ -577,10 +539,7 @@ bool FixMPMDashpot::weigh(Body &body, const Mark &mark, double dt, double *dampi
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   impulses of the dashpots on the nodes
-------------------------------------------------------------------------- */
-
+/** Impulses of the dashpots on the nodes. */
 void FixMPMDashpot::push(Body &body, double dt)
 {
   Grid &grid = body.field->grid;
@@ -643,10 +602,7 @@ void FixMPMDashpot::push(Body &body, double dt)
   body.field->nodes.sum(*body.pushes);
 }
 
-/* ----------------------------------------------------------------------
-   Work of impulses is that of the mean of the old and the new velocity, as for forces
-------------------------------------------------------------------------- */
-
+/** Work of impulses is that of the mean of the old and the new velocity, as for forces. */
 void FixMPMDashpot::apply(Body &body, double dt)
 {
   Grid &grid = body.field->grid;
@@ -693,15 +649,11 @@ void FixMPMDashpot::act(double dt, Stage stage)
   }
 }
 
-/* ----------------------------------------------------------------------
-   The energy watch knows the work of forces on points. Those of the support have a stress besides,
-   whose work is counted here as the ledger does, at the mean of the velocities of nodes before and
-   after the step
-------------------------------------------------------------------------- */
-
+/** The energy watch knows the work of forces on points. Those of the support have a stress besides,
+ *  whose work is counted here as the ledger does, at the mean of the velocities of nodes before and
+ *  after the step. */
 void FixMPMDashpot::tell_watch(const Body &body)
 {
-  static constexpr int ROW[6] = {0, 1, 2, 0, 0, 1}, COLUMN[6] = {0, 1, 2, 1, 2, 2};
   MPMField &field = *body.field;
   const MPMStencil stencil(field);
   const auto &options = field.options;
@@ -733,11 +685,8 @@ void FixMPMDashpot::tell_watch(const Body &body)
   field.ledger.driven += field.step_dt() * power / force->nktv2p;
 }
 
-/* ----------------------------------------------------------------------
-   the support, and waves that come in at this time, around which the velocities of nodes are half a
-   step before and behind
-------------------------------------------------------------------------- */
-
+/** The support, and waves that come in at this time, around which the velocities of nodes are half
+ *  a step before and behind. */
 void FixMPMDashpot::post_force(int)
 {
   const bool any = std::any_of(incoming, incoming + 3, [](const NumberOrVariable &v) {
@@ -781,8 +730,6 @@ void FixMPMDashpot::add_stress(const MPMField &field, int first, int n, double *
                         force->nktv2p * row[STRESS] * field.points->jacobian(i), tau);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixMPMDashpot::compute_scalar()
 {

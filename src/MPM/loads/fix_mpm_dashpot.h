@@ -16,11 +16,11 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 #define LMP_FIX_MPM_DASHPOT_H
 
 #include "base/mpm_state.h"
+#include "declare/option.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
-#include "loads/mpm_dashpot_options.h"
 
 #include <cstdint>
 #include <string>
@@ -28,6 +28,22 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 
 namespace LAMMPS_NS {
 class FixMPMColumn;
+
+/** Keywords of fix mpm/dashpot. */
+struct MPMDashpotOptions {
+  enum Surface { REGION };
+
+  Surface surface = REGION;
+  std::string region;
+  double speed_p = 0.0, speed_s = 0.0;
+  double density = 0.0;    ///< 0: density of the points
+  MPM_NS::NumberOrVariable incoming[3];
+  bool has_incoming = false, support = true;
+  double relax = 0.0, spacing = 0.0, area = 0.0;    ///< 0: not given
+  std::string column;    ///< ID of the fix mpm/column with the motion of the far side; empty: none
+
+  MPM_NS::Options declare(int dimension);
+};
 
 /** Surfaces of bodies behind which the body continues to infinity. Dashpots absorb the waves that
  *  arrive (Lysmer and Kuhlemeyer) and send in others, and a static support keeps the traction that
@@ -98,8 +114,8 @@ class FixMPMDashpot :
     MPMField *field;
     MPM_NS::NodeField *rates, *pushes;
     std::vector<int64_t> canonical;
-    std::vector<int>
-        points;    // with marks; valid until the topology is renewed, when points move in memory
+    // with marks; valid until the topology is renewed, when points move in memory
+    std::vector<int> points;
     std::vector<uint64_t> blocks;    // keys of the blocks that marks reach, sorted
     struct Stressed {
       int i, slot;

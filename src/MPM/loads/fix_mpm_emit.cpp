@@ -7,10 +7,11 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The material in the inlet is rigid: its nodes, and those upstream of it and around it that its points reach, have the velocity
-   of the flow. Points there neither strain nor slow down, whatever the pressure behind the inlet is, so that layers keep their
-   distance up to the end of the inlet. Were they free, a pressure at the inlet would slow them down, and new layers would come
-   on top of those.
+   The material in the inlet is rigid: its nodes, and those upstream of it and around it that its
+   points reach, have the velocity of the flow. Points there neither strain nor slow down, whatever
+   the pressure behind the inlet is, so that layers keep their distance up to the end of the inlet.
+   Were they free, a pressure at the inlet would slow them down, and new layers would come on top of
+   those.
 ------------------------------------------------------------------------- */
 
 #include "loads/fix_mpm_emit.h"
@@ -26,7 +27,6 @@
 #include "loads/mpm_inlet.h"
 #include "material/material.h"
 #include "math/matrix.h"
-#include "step/mpm_stages.h"
 #include "transfer/shape.h"
 
 #include "atom.h"
@@ -36,7 +36,6 @@
 #include "error.h"
 #include "force.h"
 #include "group.h"
-#include "input.h"
 #include "modify.h"
 #include "region.h"
 #include "update.h"
@@ -54,10 +53,7 @@ static constexpr double SAME_DIRECTION =
     1.0e-6;    // part of a velocity across the flow that is round-off
 static constexpr int MOST_PPC = 1000;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/emit TYPE region REG velocity VX VY VZ keyword value ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/emit TYPE region REG velocity VX VY VZ keyword value ... */
 Options MPMEmitOptions::declare(int dim)
 {
   using namespace option;
@@ -149,19 +145,12 @@ FixMPMEmit::FixMPMEmit(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 
 FixMPMEmit::~FixMPMEmit() = default;
 
-int FixMPMEmit::setmask()
-{
-  return POST_INTEGRATE | PRE_EXCHANGE;
-}
-
 bool FixMPMEmit::moves() const
 {
   return std::any_of(move, move + 3, [](const NumberOrVariable &v) {
     return !v.variable.empty() || v.value != 0.0;
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool FixMPMEmit::emits_into(const MPMField &one) const
 {
@@ -179,7 +168,8 @@ void FixMPMEmit::velocity_now(double *v)
   std::copy_n(flow, 3, v);
 }
 
-/** The only field and the only material that new points will have: they are in group all and that of this fix. */
+/** The only field and the only material that new points will have: they are in group all and that
+ *  of this fix. */
 void FixMPMEmit::find_field()
 {
   const auto only = [&](const char *style) {
@@ -278,10 +268,8 @@ void FixMPMEmit::init()
   motion_step = -1;
 }
 
-/* ----------------------------------------------------------------------
-   Fields are known here, which they need not be in init(). At the very start the inlet is filled
-------------------------------------------------------------------------- */
-
+/** Fields are known here, which they need not be in init(). At the very start the inlet is
+ *  filled. */
 void FixMPMEmit::setup_pre_exchange()
 {
   make_inlet();
@@ -336,10 +324,7 @@ void FixMPMEmit::make_inlet()
                    id, layer, grid.style, grid.id, h);
 }
 
-/* ----------------------------------------------------------------------
-   velocities of now: of the flow relative to the inlet, and of the inlet
-------------------------------------------------------------------------- */
-
+/** Velocities of now: of the flow relative to the inlet, and of the inlet. */
 void FixMPMEmit::evaluate_velocities()
 {
   const auto varies = [](const NumberOrVariable &v) {
@@ -373,10 +358,8 @@ void FixMPMEmit::update_motion()
                id, flow[0], flow[1], flow[2], update->ntimestep, n[0], n[1], n[2]);
 }
 
-/* ----------------------------------------------------------------------
-   nodes of the inlet. Upstream and around it as far as its points reach, so that these have its velocity alone
-------------------------------------------------------------------------- */
-
+/** Nodes of the inlet. Upstream and around it as far as its points reach, so that these have its
+ *  velocity alone. */
 static double reach_in_cells(Shape shape)
 {
   switch (shape) {
@@ -421,11 +404,8 @@ void FixMPMEmit::list_nodes()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Work is impulse times the velocity with which points are moved, less half of what this has changed by since the last step, as that of walls:
-   see MPMWallMotion::half_change()
-------------------------------------------------------------------------- */
-
+/** Work is impulse times the velocity with which points are moved, less half of what this has
+ *  changed by since the last step, as that of walls: see MPMWallMotion::half_change() */
 void FixMPMEmit::act(double dt, Stage stage)
 {
   if (!field) return;
@@ -471,10 +451,8 @@ void FixMPMEmit::act(double dt, Stage stage)
   if (ledger.on) ledger.transfer += collided * force->mvv2e;
 }
 
-/* ----------------------------------------------------------------------
-   The step has ended: how far has the flow come? New layers are made with the exchange of this step
-------------------------------------------------------------------------- */
-
+/** The step has ended: how far has the flow come? New layers are made with the exchange of this
+ *  step. */
 bigint FixMPMEmit::layers_now() const
 {
   return (bigint) std::floor(past.travel / layer + 0.5);
@@ -493,11 +471,9 @@ void FixMPMEmit::pre_exchange()
   if (next_reneighbor == update->ntimestep) emit();
 }
 
-/* ----------------------------------------------------------------------
-   No point has the ID of one that was removed, as files of several steps and what looks for a point by its ID would take the two
-   for one. Where LAMMPS has no other IDs left, those of now count alone
-------------------------------------------------------------------------- */
-
+/** No point has the ID of one that was removed, as files of several steps and what looks for a
+ *  point by its ID would take the two for one. Where LAMMPS has no other IDs left, those of now
+ *  count alone. */
 void FixMPMEmit::note_ids()
 {
   past.newest = std::max(past.newest, (double) largest_id());
@@ -598,11 +574,8 @@ void FixMPMEmit::make_point(const double *where, const double *v, double volume,
     atom->radius[i] = 0.5 * (domain->dimension == 3 ? std::cbrt(volume) : std::sqrt(volume));
 }
 
-/* ----------------------------------------------------------------------
-   as if heat were conducted to the point. Where that melts it, or its specific heat depends on the temperature, the heat is
-   found step by step
-------------------------------------------------------------------------- */
-
+/** As if heat were conducted to the point. Where that melts it, or its specific heat depends on the
+ *  temperature, the heat is found step by step. */
 void FixMPMEmit::give_temperature(int i)
 {
   double *const row = material->history[i];
@@ -619,8 +592,6 @@ void FixMPMEmit::give_temperature(int i)
     material->material->warm(
         row, material->material->conduction(row).capacity * (temperature - row[column]));
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMEmit::write_restart(FILE *fp)
 {
@@ -651,16 +622,6 @@ void FixMPMEmit::restart(char *buf)
   past.acted = list[11];
   std::copy_n(list + 12, 3, past.velocity);
   std::copy_n(list + 15, MPMTraffic::NREAL, past.total.reals());
-}
-
-/* ----------------------------------------------------------------------
-   scalar: mass that has entered; vector: points, mass, momentum, and energy of these, speed and mass of the flow per time,
-   force of the inlet on the material and its work
-------------------------------------------------------------------------- */
-
-double FixMPMEmit::compute_scalar()
-{
-  return past.total.mass;
 }
 
 double FixMPMEmit::compute_vector(int k)

@@ -58,14 +58,16 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
  public:
   FixMPMEmit(class LAMMPS *, int, char **);
   ~FixMPMEmit() override;
-  int setmask() override;
+  int setmask() override { return FixConst::POST_INTEGRATE | FixConst::PRE_EXCHANGE; }
   void init() override;
   void setup_pre_exchange() override;
   void post_integrate() override;
   void pre_exchange() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
-  double compute_scalar() override;
+  /** scalar: mass that has entered; vector: points, mass, momentum, and energy of these, speed and
+   *  mass of the flow per time, force of the inlet on the material and its work. */
+  double compute_scalar() override { return past.total.mass; }
   double compute_vector(int) override;
   double memory_usage() override;
 

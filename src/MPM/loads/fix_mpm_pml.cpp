@@ -7,30 +7,38 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   In a layer the coordinates are stretched by complex factors s_j = 1 + d_j/(i omega) (U. Basu, A.K. Chopra, Comput. Methods Appl.
-   Mech. Eng. 192 (2003) 1337; Int. J. Numer. Methods Eng. 59 (2004) 1039). With s = s_x s_y s_z, the equation of motion of the
-   layer times s, and the strain, are
+   In a layer the coordinates are stretched by complex factors s_j = 1 + d_j/(i omega) (U. Basu,
+   A.K. Chopra, Comput. Methods Appl. Mech. Eng. 192 (2003) 1337; Int. J. Numer. Methods Eng. 59
+   (2004) 1039). With s = s_x s_y s_z, the equation of motion of the layer times s, and the strain,
+   are
 
-     s rho (i omega)^2 u_i = d/dx_j (s/s_j sigma_ij),   sigma = C : sym G,   G_ij = (1/s_j) du_i/dx_j
+     s rho (i omega)^2 u_i = d/dx_j (s/s_j sigma_ij),
+     sigma = C : sym G,   G_ij = (1/s_j) du_i/dx_j
 
    In time, and in the weak form of points, this is
 
      dG_ij/dt = dv_i/dx_j - d_j G_ij
-     m a_i = -V (sigma_ij + sum_{k!=j} d_k S_ij + prod_{k!=j} d_k SS_ij) dN/dx_j - m (e_1 v_i + e_2 u_i + e_3 U_i)
+     m a_i = -V (sigma_ij + sum_{k!=j} d_k S_ij + prod_{k!=j} d_k SS_ij) dN/dx_j - m (e_1 v_i + e_2
+     u_i + e_3 U_i)
 
-   where S is the integral of sigma over time and SS that of S, U that of u, and e_1, e_2, e_3 are sum, sum of products of two, and
-   product of the d_j (in 2d, of two axes). The law of the material gets the rate dG/dt in place of the velocity gradient. Points thus
-   have any law that is linear in small strains, and stress is what it is in other points. All is for the change since the start:
+   where S is the integral of sigma over time and SS that of S, U that of u, and e_1, e_2, e_3 are
+   sum, sum of products of two, and product of the d_j (in 2d, of two axes). The law of the material
+   gets the rate dG/dt in place of the velocity gradient. Points thus have any law that is linear in
+   small strains, and stress is what it is in other points. All is for the change since the start:
    sigma is the stress less that at the start, which stays in the internal forces.
 
-   With mix, d_j has a share of the others (K.C. Meza-Fajardo, A.S. Papageorgiou, Bull. Seismol. Soc. Am. 98 (2008) 1811).
+   With mix, d_j has a share of the others (K.C. Meza-Fajardo, A.S. Papageorgiou, Bull. Seismol.
+   Soc. Am. 98 (2008) 1811).
 
-   Time. Velocities are at the middle of steps and G, stress, and u at their ends, as for other points. S and U are kept at the
-   middle, and half a step is added to them: S^n = S^(n-1/2) + dt/2 sigma^n. The damping e_1 v takes the mean of the old and
-   the new velocity at nodes. G decays exactly: dt dG/dt = (1 - exp(-d dt))/d (L - d G). For a wave in a uniform layer the largest
-   stable step falls from 2/omega by the factor (1 + e_2/omega^2)^(-1/2) at the most, from the eigenvalues of a step.
+   Time. Velocities are at the middle of steps and G, stress, and u at their ends, as for other
+   points. S and U are kept at the middle, and half a step is added to them: S^n = S^(n-1/2) + dt/2
+   sigma^n. The damping e_1 v takes the mean of the old and the new velocity at nodes. G decays
+   exactly: dt dG/dt = (1 - exp(-d dt))/d (L - d G). For a wave in a uniform layer the largest
+   stable step falls from 2/omega by the factor (1 + e_2/omega^2)^(-1/2) at the most, from the
+   eigenvalues of a step.
 
-   Energy. What is lost is the work of the forces on nodes that other points do not have, and V sigma : (dv/dx - dG/dt).
+   Energy. What is lost is the work of the forces on nodes that other points do not have, and V
+   sigma : (dv/dx - dG/dt).
 ------------------------------------------------------------------------- */
 
 #include "loads/fix_mpm_pml.h"
@@ -39,11 +47,9 @@
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
-#include "field/mpm_frame.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_point_batches.h"
-#include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
-#include "loads/mpm_face.h"
 #include "material/batch_kernels.h"
 #include "material/material.h"
 
@@ -63,12 +69,10 @@ using Data = MPMStageData;    // what stages read and write
 
 static const char *const FACE[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
 
+static constexpr int COLUMN[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};    // of a stress
 static constexpr double SMALL_STRAIN = 0.02;    // more is not what layers are made for
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/pml keyword values ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/pml keyword values ... */
 Options MPMPMLOptions::declare(int dim)
 {
   using namespace option;
@@ -172,10 +176,8 @@ void FixMPMPML::init_physics(MPMPlan &plan)
   }
 }
 
-/* ----------------------------------------------------------------------
-   what this run starts with: which points are in the layers, by where they are now, and their stress
-------------------------------------------------------------------------- */
-
+/** What this run starts with: which points are in the layers, by where they are now, and their
+ *  stress. */
 double FixMPMPML::thickness(const MPMField &field, int face) const
 {
   return cells[face] * field.lattice.h;
@@ -291,8 +293,6 @@ void FixMPMPML::post_run()
   known = all;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMPML::topology_changed(MPMField &field)
 {
   Body &body = *std::find_if(bodies.begin(), bodies.end(), [&](const Body &b) {
@@ -300,12 +300,11 @@ void FixMPMPML::topology_changed(MPMField &field)
   });
   is_inside.resize(atom->nmax);
   body.points.clear();
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) {
-      const double *const d = rows[i] + DAMPING;
-      is_inside[i] = run.material && d[0] + d[1] + d[2] > 0.0;
-      if (is_inside[i]) body.points.push_back({i, run.slot});
-    }
+  each_point(field, [&](const auto &run, int i) {
+    const double *const d = rows[i] + DAMPING;
+    is_inside[i] = run.material && d[0] + d[1] + d[2] > 0.0;
+    if (is_inside[i]) body.points.push_back({i, run.slot});
+  });
 }
 
 void FixMPMPML::add_stages(MPMPlan &plan, MPMPlan::Place place)
@@ -324,13 +323,9 @@ void FixMPMPML::add_stages(MPMPlan &plan, MPMPlan::Place place)
   if (place == MPMPlan::AFTER_SOLVE) each("work of matched layers", &FixMPMPML::count_work);
 }
 
-/* ----------------------------------------------------------------------
-   forces on nodes besides those of other points, and the damping of their mass
-------------------------------------------------------------------------- */
-
+/** Forces on nodes besides those of other points, and the damping of their mass. */
 void FixMPMPML::find_forces(Body &body)
 {
-  static constexpr int COLUMN[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};    // of a stress
   MPMField &field = *body.field;
   NodeField &nodes = *body.pushes;
   const MPMStencil stencil(field);
@@ -387,7 +382,8 @@ void FixMPMPML::find_forces(Body &body)
   field.nodes.sum(nodes);
 }
 
-/** Velocities of nodes with these forces, and the damping at the mean of the old and the new velocity. */
+/** Velocities of nodes with these forces, and the damping at the mean of the old and the new
+ *  velocity. */
 void FixMPMPML::apply(Body &body)
 {
   Grid &grid = body.field->grid;
@@ -419,10 +415,7 @@ void FixMPMPML::count_work(Body &body)
   work_of_nodes += done * force->mvv2e;
 }
 
-/* ----------------------------------------------------------------------
-   strain in stretched coordinates
-------------------------------------------------------------------------- */
-
+/** Strain in stretched coordinates. */
 bool FixMPMPML::stretches(int first, int n) const
 {
   const auto *const inside = is_inside.data() + first;
@@ -433,7 +426,6 @@ bool FixMPMPML::stretches(int first, int n) const
 
 void FixMPMPML::stretch_gradients(MPMField &field, int first, int n, double dt, double *L)
 {
-  static constexpr int COLUMN[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const int dim = field.lattice.dim;
   double lost = 0.0;
   for (int p = 0; p < n; p++, L += dim * dim) {
@@ -458,8 +450,6 @@ void FixMPMPML::stretch_gradients(MPMField &field, int first, int n, double dt, 
   field.ledger.internal -= lost;
 }
 
-/* ---------------------------------------------------------------------- */
-
 /** The speed at which the plain limit of the time step is that of the layer. */
 double FixMPMPML::wave_speed(const MPMField &field, int i, double c) const
 {
@@ -468,22 +458,12 @@ double FixMPMPML::wave_speed(const MPMField &field, int i, double c) const
   return e2 > 0.0 ? std::sqrt(c * c + 0.25 * e2 * h * h) : c;
 }
 
-void FixMPMPML::account(double *values) const
-{
-  values[0] += work_of_nodes + work_of_strain;
-}
-
 double FixMPMPML::compute_scalar()
 {
   const double mine = work_of_nodes + work_of_strain;
   double all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
-}
-
-double FixMPMPML::compute_vector(int k)
-{
-  return k == 0 ? known : largest;
 }
 
 double FixMPMPML::memory_usage()

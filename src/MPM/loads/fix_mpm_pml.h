@@ -49,7 +49,7 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, public MPMStretch, priv
   void setup(int) override;
   void post_run() override;
   double compute_scalar() override;
-  double compute_vector(int) override;
+  double compute_vector(int k) override { return k == 0 ? known : largest; }
   double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -62,7 +62,7 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, public MPMStretch, priv
   bool stretches(int first, int n) const override;
   void stretch_gradients(MPMField &, int first, int n, double dt, double *L) override;
   std::vector<Account> accounts() const override { return {{"matched layers", false}}; }
-  void account(double *values) const override;
+  void account(double *values) const override { values[0] += work_of_nodes + work_of_strain; }
 
  private:
   // for each point; all are zero outside of the layers
@@ -81,16 +81,16 @@ class FixMPMPML : public FixMPMState, public MPMPhysics, public MPMStretch, priv
 
   struct Body {
     MPMField *field;
-    MPM_NS::NodeField
-        *pushes;    // [node] force, later impulse [3]; damping of its mass [mass/time]
+    // [node] force, later impulse [3]; damping of its mass [mass/time]
+    MPM_NS::NodeField *pushes;
     struct Point {
       int i, slot;
     };
     std::vector<Point> points;
   };
   std::vector<Body> bodies;
-  std::vector<char>
-      is_inside;    // [n] valid until the topology is renewed, when points move in memory
+  // [n] valid until the topology is renewed, when points move in memory
+  std::vector<char> is_inside;
   bool defined = false;
   double known = 0.0;                                  // number of points in the layers
   double largest = 0.0;                                // largest damping along one axis

@@ -36,7 +36,6 @@
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_time_limit.h"
-#include "loads/mpm_face.h"
 #include "math/matrix.h"
 
 #include "atom.h"
@@ -59,10 +58,7 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/traction surface values keyword values ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/traction surface values keyword values ... */
 Options MPMTractionOptions::declare(int dim)
 {
   using namespace option;
@@ -193,11 +189,8 @@ bool FixMPMTraction::belongs(const MPMField &field, int i) const
   return (atom->mask[i] & groupbit) && field.is_point(i) && !field.is_element_node(i);
 }
 
-/* ----------------------------------------------------------------------
-   pressure acts on the area that the surface has by where points are, in the updated frame. It
-   changes slowly in explicit steps
-------------------------------------------------------------------------- */
-
+// Pressure acts on the area that the surface has by where points are, in the updated frame. It
+// changes slowly in explicit steps.
 static constexpr int EVERY = 10;    // explicit steps
 
 void FixMPMTraction::add_stages(MPMPlan &plan, MPMPlan::Place place)
@@ -229,10 +222,7 @@ void FixMPMTraction::find_growth(MPMField &field)
   });
 }
 
-/* ----------------------------------------------------------------------
-   what this run starts with: the surface, and loads of the first step
-------------------------------------------------------------------------- */
-
+/** What this run starts with: the surface, and loads of the first step. */
 void FixMPMTraction::setup(int vflag)
 {
   if (!warned_of_nodes) note_nodes();
@@ -310,13 +300,10 @@ void FixMPMTraction::look_for_curls()
                    id, now_even, evenness_at_start);
 }
 
-/* ----------------------------------------------------------------------
-   In the updated frame, points that move from cell to cell next to a surface cut by the lattice
-   lose stress, and the area that is found of where they are falls behind: radii of a tube and a
-   sphere under pressure inside are right to 1 % up to stretches of 1.5 of the bore as this finds
-   it, and not beyond. Mean over the surface of the largest stretch in it. Collective
-------------------------------------------------------------------------- */
-
+/** In the updated frame, points that move from cell to cell next to a surface cut by the lattice
+ *  lose stress, and the area that is found of where they are falls behind: radii of a tube and a
+ *  sphere under pressure inside are right to 1 % up to stretches of 1.5 of the bore as this finds
+ *  it, and not beyond. Mean over the surface of the largest stretch in it. Collective. */
 double FixMPMTraction::mean_stretch() const
 {
   const auto *const points = MPMPoints::get(atom);
@@ -428,8 +415,6 @@ void FixMPMTraction::define()
                    all[1]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMTraction::evaluate_loads()
 {
   bool any = false;
@@ -492,12 +477,9 @@ void FixMPMTraction::post_force(int)
     add_forces();
 }
 
-/* ----------------------------------------------------------------------
-   Work is that of the mean of the loads before and after each motion of a point. The stress -W J/a
-   T n has the power W V T.n d(J/a)/dt in a load along the normal; that of a traction along the
-   surface, whose sum over layers is next to nothing, is left out here
-------------------------------------------------------------------------- */
-
+/** Work is that of the mean of the loads before and after each motion of a point. The stress -W J/a
+ *  T n has the power W V T.n d(J/a)/dt in a load along the normal; that of a traction along the
+ *  surface, whose sum over layers is next to nothing, is left out here. */
 void FixMPMTraction::add_forces()
 {
   const auto *const points = MPMPoints::get(atom);
@@ -531,11 +513,8 @@ void FixMPMTraction::add_forces()
   }
 }
 
-/* ----------------------------------------------------------------------
-   of the pressure at points: differences across a part of a cell, in which points differ from their
-   neighbors
-------------------------------------------------------------------------- */
-
+/** Of the pressure at points: differences across a part of a cell, in which points differ from
+ *  their neighbors. */
 void FixMPMTraction::find_gradient(std::vector<double> &gradient)
 {
   if (now[3].of_points.empty()) return;    // the same everywhere
@@ -555,13 +534,9 @@ void FixMPMTraction::find_gradient(std::vector<double> &gradient)
   }
 }
 
-/* ----------------------------------------------------------------------
-   pressure on all of the surface: where it depends on the place, there is a force on the volume
-   besides the stress,
-   -int p N_i n da = -int (p grad N_i + N_i grad p) dv. The work is that on the volume, and of this
-   force
-------------------------------------------------------------------------- */
-
+/** Pressure on all of the surface: where it depends on the place, there is a force on the volume
+ *  besides the stress, -int p N_i n da = -int (p grad N_i + N_i grad p) dv. The work is that on the
+ *  volume, and of this force. */
 void FixMPMTraction::press()
 {
   const auto *const points = MPMPoints::get(atom);
@@ -596,11 +571,8 @@ void FixMPMTraction::press()
     }
 }
 
-/* ----------------------------------------------------------------------
-   the part of the load that is a stress, of points that the plan may have sorted since the loads
-   were evaluated
-------------------------------------------------------------------------- */
-
+/** The part of the load that is a stress, of points that the plan may have sorted since the loads
+ *  were evaluated. */
 bool FixMPMTraction::adds_stress(const MPMField &field, int first, int last) const
 {
   for (int i = first; i < last; i++)
@@ -648,11 +620,8 @@ static void turn_with(const double *a, const double *b, double *v)
   for (int d = 0; d < 3; d++) v[d] += first[d] + second[d] / (1.0 + cosine);
 }
 
-/* ----------------------------------------------------------------------
-   the loads of this step at other deformations: dead ones are those in the rows, which pressure
-   changes by its area
-------------------------------------------------------------------------- */
-
+/** The loads of this step at other deformations: dead ones are those in the rows, which pressure
+ *  changes by its area. */
 bool FixMPMTraction::follows(const MPMField &field, int first, int last) const
 {
   if (surface == FREE) return adds_stress(field, first, last);
@@ -696,22 +665,12 @@ void FixMPMTraction::follow(const MPMField &field, int first, int n, const doubl
   }
 }
 
-/* ----------------------------------------------------------------------
-   the watch of energies knows the work of atom->f alone
-------------------------------------------------------------------------- */
-
+/** The watch of energies knows the work of atom->f alone. */
 std::vector<MPMPhysics::Account> FixMPMTraction::accounts() const
 {
   if (surface == POINTS) return {};
   return {{"work of " + std::string(id) + " by stress", false, true}};
 }
-
-void FixMPMTraction::account(double *values) const
-{
-  if (surface != POINTS) values[0] += work[1];
-}
-
-/* ---------------------------------------------------------------------- */
 
 double FixMPMTraction::compute_scalar()
 {

@@ -19,7 +19,7 @@ FixStyle(mpm/traction,FixMPMTraction);
 #include "declare/option.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
-#include "loads/mpm_face_growth.h"
+#include "loads/mpm_face.h"
 #include "loads/mpm_moment.h"
 
 #include <memory>
@@ -77,7 +77,10 @@ class FixMPMTraction :
               double *tau) const override;
   MPMTrialForces *trial_forces(const MPMField &) override { return turn.get(); }
   std::vector<Account> accounts() const override;
-  void account(double *values) const override;
+  void account(double *values) const override
+  {
+    if (surface != POINTS) values[0] += work[1];
+  }
 
   /** load: [3] force per area before deformation on the surface at point i, by the loads of this
    *  step, with the deformation gradient F [9, row-major]. For searches for equilibrium; its node

@@ -6,17 +6,13 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "loads/mpm_dashpot_options.h"
-
+#include "loads/fix_mpm_dashpot.h"
 #include "loads/mpm_face.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/dashpot region REG cp cs keyword values ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/dashpot region REG cp cs keyword values ... */
 Options MPMDashpotOptions::declare(int dim)
 {
   using namespace option;

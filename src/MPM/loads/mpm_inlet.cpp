@@ -123,8 +123,6 @@ MPMInlet::MPMInlet(LAMMPS *lmp, const std::string &user, Region *inlet, const do
   for (auto &column : columns) column.area = area / (double) columns.size();
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool MPMInlet::inside(const double *x) const
 {
   return region->match(x[0], x[1], domain->dimension == 2 ? 0.0 : x[2]);
@@ -184,11 +182,8 @@ void MPMInlet::choose_axes()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Area of the section in the middle, and its extent along both axes: is it all of the rectangle of
-   these?
-------------------------------------------------------------------------- */
-
+/** Area of the section in the middle, and its extent along both axes: is it all of the rectangle of
+ *  these? */
 bool MPMInlet::find_section(const std::string &user, const double *low, const double *high)
 {
   if (domain->dimension == 2) {
@@ -237,11 +232,8 @@ bool MPMInlet::find_section(const std::string &user, const double *low, const do
   return false;
 }
 
-/* ----------------------------------------------------------------------
-   all sections must be the same, or else points would leave the inlet through its sides, or not
-   fill it
-------------------------------------------------------------------------- */
-
+/** All sections must be the same, or else points would leave the inlet through its sides, or not
+ *  fill it. */
 void MPMInlet::check_prism(const std::string &user) const
 {
   const int second = domain->dimension == 3 ? PRISM_SAMPLES : 1;
@@ -264,8 +256,6 @@ void MPMInlet::check_prism(const std::string &user) const
         "intersect)",
         user, normal[0], normal[1], normal[2]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMInlet::holds(const double *x, double reach) const
 {

@@ -153,11 +153,8 @@ double MPMMoment::differentiate(const double *u)
   return sum;
 }
 
-/* ----------------------------------------------------------------------
-   d(omega) = -T^-1 dT omega, dT = sum w (2 r.dr 1 - dr r - r dr); a motion of the center changes
-   nothing in T, as sum w r = 0
-------------------------------------------------------------------------- */
-
+/** d(omega) = -T^-1 dT omega, dT = sum w (2 r.dr 1 - dr r - r dr); a motion of the center changes
+ *  nothing in T, as sum w r = 0. */
 void MPMMoment::add_change(const double *du, double *dforce)
 {
   double mine[13] = {0.0}, all[13];    // sum w, sum w du, sum w dr r

@@ -48,10 +48,7 @@ FixMPMMixture::FixMPMMixture(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
 }
 
-/* ----------------------------------------------------------------------
-   missing fields are found here; with them, they call init_action()
-------------------------------------------------------------------------- */
-
+/** Missing fields are found here; with them, they call init_action() */
 void FixMPMMixture::init()
 {
   for (const auto &name : {options.soil_id, options.water_id})
@@ -147,8 +144,6 @@ void FixMPMMixture::init_action()
   mixture.lists_valid = false;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMMixture::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   if (place == MPMPlan::BEFORE_SOLVE)
@@ -172,15 +167,6 @@ void FixMPMMixture::add_stages(MPMPlan &plan, MPMPlan::Place place)
                   });
 }
 
-/* ----------------------------------------------------------------------
-   what drag has turned into heat is spent, like work of viscosity
-------------------------------------------------------------------------- */
-
-std::vector<MPMPhysics::Account> FixMPMMixture::accounts() const
-{
-  return {{"heat of drag", true}};
-}
-
 /** Energy that drag has turned into heat so far. */
 double FixMPMMixture::compute_scalar()
 {
@@ -188,8 +174,6 @@ double FixMPMMixture::compute_scalar()
   MPI_Allreduce(&mixture.dissipated, &all, 1, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMMixture::write_restart(FILE *fp)
 {
@@ -207,14 +191,4 @@ void FixMPMMixture::restart(char *buf)
   memcpy(list, buf, sizeof(list));
   if (comm->me == 0) mixture.dissipated = list[0];
   mixture.meets = mixture.pores_known = list[1] != 0.0;
-}
-
-double FixMPMMixture::compute_vector(int i)
-{
-  return mixture.force_on_soil(i);
-}
-
-double FixMPMMixture::memory_usage()
-{
-  return FixMPMState::memory_usage() + mixture.memory_usage();
 }

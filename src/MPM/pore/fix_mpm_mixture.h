@@ -26,18 +26,18 @@ FixStyle(mpm/mixture,FixMPMMixture);
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Soil and water at the same place, each a field (fix mpm) with its own points and velocity. They share the volume and
- *  the gradient of the water pressure, and exchange momentum by drag. */
+/** Soil and water at the same place, each a field (fix mpm) with its own points and velocity. They
+ *  share the volume and the gradient of the water pressure, and exchange momentum by drag. */
 class FixMPMMixture : public FixMPMState, public MPMPhysics, public MPMNodeAction {
  public:
   FixMPMMixture(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   double compute_scalar() override;
-  double compute_vector(int) override;
+  double compute_vector(int i) override { return mixture.force_on_soil(i); }
   void write_restart(FILE *) override;
   void restart(char *) override;
-  double memory_usage() override;
+  double memory_usage() override { return FixMPMState::memory_usage() + mixture.memory_usage(); }
 
   // of both MPMPhysics and MPMNodeAction
 
@@ -63,7 +63,8 @@ class FixMPMMixture : public FixMPMState, public MPMPhysics, public MPMNodeActio
   {
     return mixture.stable_dt(field, tag);
   }
-  std::vector<Account> accounts() const override;
+  /** What drag has turned into heat is spent, like work of viscosity. */
+  std::vector<Account> accounts() const override { return {{"heat of drag", true}}; }
   void account(double *values) const override { values[0] += mixture.dissipated; }
 
   /** Is this field (ID) the soil or the water? */

@@ -33,10 +33,7 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/pore K RHO G keyword values ...
-------------------------------------------------------------------------- */
-
+/** fix ID all mpm/pore K RHO G keyword values ... */
 FixMPMPore::FixMPMPore(LAMMPS *lmp, int narg, char **arg) :
     FixMPMState(lmp, narg, arg), flow(lmp, options, points, id), checks(lmp, options, id)
 {
@@ -104,10 +101,7 @@ FixMPMPore::~FixMPMPore()
       fix->mass_varies = false;
 }
 
-/* ----------------------------------------------------------------------
-   initial pressures of the present points; a restart file has others
-------------------------------------------------------------------------- */
-
+/** Initial pressures of the present points; a restart file has others. */
 std::vector<double> FixMPMPore::initial_pressures() const
 {
   if (initial_index < 0) return {};
@@ -120,8 +114,6 @@ std::vector<double> FixMPMPore::initial_pressures() const
                  options.initial.substr(2), values[i], atom->tag[i]);
   return values;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMPore::init()
 {
@@ -267,11 +259,8 @@ void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)
                   });
 }
 
-/* ----------------------------------------------------------------------
-   pores of soils without retention are full of water, also above the water table, where suction
-   holds it
-------------------------------------------------------------------------- */
-
+/** Pores of soils without retention are full of water, also above the water table, where suction
+ *  holds it. */
 void FixMPMPore::setup_points()
 {
   const bool at_rest = options.geostatic && !has_state;
@@ -334,11 +323,8 @@ bool FixMPMPore::surface_force(MPMField &field, const std::vector<char> &near,
   return mine.has_water();
 }
 
-/* ----------------------------------------------------------------------
-   the energy that the water stores, and the part of its kinetic energy that mass and velocity of
-   points do not include, for compute mpm/energy and the energy watch
-------------------------------------------------------------------------- */
-
+/** The energy that the water stores, and the part of its kinetic energy that mass and velocity of
+ *  points do not include, for compute mpm/energy and the energy watch. */
 void FixMPMPore::account(double *values) const
 {
   double sum = 0.0, moving = 0.0;
@@ -375,34 +361,4 @@ double FixMPMPore::quantity(int k, int i) const
   if (k == 2) return soil->retention.at(points.pressure[i][0]).saturation;
   const double J = MPMPoints::get(atom)->jacobian(i);
   return k == 1 ? std::max(0.0, soil->porosity_at(J)) : points.inertia[i][k - 3] / J;
-}
-
-void FixMPMPore::post_run()
-{
-  flow.watch.look_at_inertia();
-}
-
-double FixMPMPore::compute_scalar()
-{
-  return flow.volume_came();
-}
-
-double FixMPMPore::compute_vector(int part)
-{
-  return flow.inflow(part);
-}
-
-void FixMPMPore::write_restart(FILE *fp)
-{
-  flow.write_restart(fp, has_state);
-}
-
-void FixMPMPore::restart(char *buf)
-{
-  has_state = flow.restart((const double *) buf);
-}
-
-double FixMPMPore::memory_usage()
-{
-  return FixMPMState::memory_usage() + flow.memory_usage();
 }

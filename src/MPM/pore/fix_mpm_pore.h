@@ -18,7 +18,6 @@ FixStyle(mpm/pore,FixMPMPore);
 #include "base/mpm_state.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_physics.h"
-#include "pore/mpm_pore_checks.h"
 #include "pore/mpm_pore_flow.h"
 
 #include <string>
@@ -35,12 +34,12 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, public MPMPorePressure
   ~FixMPMPore() override;
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
-  void post_run() override;
-  double compute_scalar() override;
-  double compute_vector(int) override;
-  void write_restart(FILE *) override;
-  void restart(char *) override;
-  double memory_usage() override;
+  void post_run() override { flow.watch.look_at_inertia(); }
+  double compute_scalar() override { return flow.volume_came(); }
+  double compute_vector(int part) override { return flow.inflow(part); }
+  void write_restart(FILE *fp) override { flow.write_restart(fp, has_state); }
+  void restart(char *buf) override { has_state = flow.restart((const double *) buf); }
+  double memory_usage() override { return FixMPMState::memory_usage() + flow.memory_usage(); }
 
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;

@@ -11,20 +11,21 @@
 
      sum_p V_p s_p psi_k'(y_p) = - sum_p m_p g psi_k(y_p)
 
-   for all functions psi_k of the height that the velocity of nodes can have: those of planes of nodes, of
-   which the three lowest move in proportion to their distance from the floor, as walls want it
-   (mpm_line_constraint.cpp). Psi' are what forces have as gradients. The stress rho g (y - top) is not quite
-   a solution: sums over points are not integrals where the functions are cut by the surface, and forces of
-   1/64 to 1/32 of the weight of a cell are left over. With
+   for all functions psi_k of the height that the velocity of nodes can have: those of planes of
+   nodes, of which the three lowest move in proportion to their distance from the floor, as walls
+   want it (mpm_line_constraint.cpp). Psi' are what forces have as gradients. The stress rho g (y -
+   top) is not quite a solution: sums over points are not integrals where the functions are cut by
+   the surface, and forces of 1/64 to 1/32 of the weight of a cell are left over. With
 
      s_p = rho g y_p + sum_k lambda_k psi_k'(y_p)
 
-   the equations have a matrix with a band, positive definite, whose solution is the least change of the
-   stress, to round-off. It is that of layers with several densities, too. In the ground below the first cells
-   it is the weight above the point.
+   the equations have a matrix with a band, positive definite, whose solution is the least change of
+   the stress, to round-off. It is that of layers with several densities, too. In the ground below
+   the first cells it is the weight above the point.
 
-   Between planes of nodes the stress of the uppermost points follows from the equation of the uppermost nodes
-   alone. It is smaller than that of their depth, by up to 0.204 of the weight of a cell.
+   Between planes of nodes the stress of the uppermost points follows from the equation of the
+   uppermost nodes alone. It is smaller than that of their depth, by up to 0.204 of the weight of a
+   cell.
 ------------------------------------------------------------------------- */
 
 #include "pore/mpm_geostatic.h"
@@ -35,9 +36,9 @@
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
 #include "field/mpm_point_batches.h"
-#include "field/mpm_stencil.h"
 #include "force.h"
 #include "material/batch_kernels.h"
 #include "material/material.h"
@@ -50,8 +51,6 @@ using namespace MPM_NS;
 
 static constexpr int LOWEST = 3;    // planes of nodes that move with the distance from the floor
 static constexpr double SAME = 1.0e-6;
-
-/* ---------------------------------------------------------------------- */
 
 MPMGeostatic::MPMGeostatic(LAMMPS *lmp, MPMField &field, const double *gravity,
                            const std::string &who) :
@@ -67,8 +66,6 @@ double MPMGeostatic::height(int i) const
 {
   return where.up * atom->x[i][where.axis];
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGeostatic::find_ground(const double *gravity)
 {
@@ -117,10 +114,7 @@ void MPMGeostatic::find_ground(const double *gravity)
   nfunctions = (int) std::ceil((where.top - where.floor) / lattice.h + floor + reach) - first + 1;
 }
 
-/* ----------------------------------------------------------------------
-   the volume over the area of the widest plane is the height of level ground
-------------------------------------------------------------------------- */
-
+/** The volume over the area of the widest plane is the height of level ground. */
 void MPMGeostatic::check_level()
 {
   const auto &lattice = field.lattice;
@@ -150,11 +144,9 @@ void MPMGeostatic::check_level()
         who, high, low);
 }
 
-/* ----------------------------------------------------------------------
-   nodes see where the rows of points end: with these off the face, forces on nodes are balanced by a stress next to it that is not the
-   weight above, by a share that does not become less with the spacing
-------------------------------------------------------------------------- */
-
+/** Nodes see where the rows of points end: with these off the face, forces on nodes are balanced by
+ *  a stress next to it that is not the weight above, by a share that does not become less with the
+ *  spacing. */
 void MPMGeostatic::warn_of_gap() const
 {
   constexpr double CLOSE = 0.02, ROW = 0.1;    // in node spacings
@@ -177,8 +169,6 @@ void MPMGeostatic::warn_of_gap() const
         "before fix mpm, or give this an origin with which they end at the face",
         who, fabs(gap), gap > 0.0 ? "above" : "below");
 }
-
-/* ---------------------------------------------------------------------- */
 
 int MPMGeostatic::planes(const MPMField &of, int i, Part list[BAND]) const
 {
@@ -221,10 +211,7 @@ int MPMGeostatic::parts(int i, Part list[BAND]) const
   return count;
 }
 
-/* ----------------------------------------------------------------------
-   by Cholesky's decomposition of the band; functions that no point sees have the factor zero
-------------------------------------------------------------------------- */
-
+/** By Cholesky's decomposition of the band; functions that no point sees have the factor zero. */
 std::vector<double> MPMGeostatic::solve(std::vector<double> &a, std::vector<double> x) const
 {
   constexpr double NOTHING = 1.0e-13;
@@ -254,8 +241,6 @@ std::vector<double> MPMGeostatic::solve(std::vector<double> &a, std::vector<doub
   }
   return x;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGeostatic::set_stress(double K0, const std::function<double(int)> &pressure,
                               const std::vector<double> &carried)
@@ -324,11 +309,9 @@ void MPMGeostatic::load(const std::vector<int> &list, const FixMPMMaterial *mate
   for (auto &row : batch.A) std::fill(row, row + batch.n, 0.0);
 }
 
-/* ----------------------------------------------------------------------
-   Laws that keep the elastic strain: that with which their stress is the one that points have, logarithmic and by
-   Newton's method, with differences for derivatives. first: its first history variable
-------------------------------------------------------------------------- */
-
+/** Laws that keep the elastic strain: that with which their stress is the one that points have,
+ *  logarithmic and by Newton's method, with differences for derivatives. first: its first history
+ *  variable. */
 void MPMGeostatic::strain(const std::vector<int> &list, const FixMPMMaterial *material,
                           int first) const
 {
@@ -381,21 +364,15 @@ void MPMGeostatic::strain(const std::vector<int> &list, const FixMPMMaterial *ma
       material->history[list[p]][first + c] = c < 3 ? std::expm1(2.0 * e[c == up ? 0 : 1][p]) : 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   a step without motion must not change the stress. Where it is beyond yield by less than the weight of a
-   cell, as it can be next to the surface, points get what the law makes of it
-------------------------------------------------------------------------- */
-
+/** A step without motion must not change the stress. Where it is beyond yield by less than the
+ *  weight of a cell, as it can be next to the surface, points get what the law makes of it. */
 void MPMGeostatic::check_laws()
 {
   Batch &batch = *field.batch;
-  std::vector<int> list;
-  const FixMPMMaterial *material = nullptr;
   double most = 0.0, changed = 0.0;
   const double h = field.lattice.h;
   std::string name;
-  const auto flush = [&]() {
-    if (list.empty()) return;
+  each_material_batch(field, [&](const std::vector<int> &list, const FixMPMMaterial *material) {
     const int first = material->find_history("elastic_xx");
     if (first >= 0) strain(list, material, first);
     load(list, material);
@@ -419,16 +396,7 @@ void MPMGeostatic::check_laws()
         name = material->id;
       }
     }
-    list.clear();
-  };
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
-    const auto *mine = field.material_of(i);
-    if (mine != material || list.size() == BATCH) flush();
-    material = mine;
-    if (mine) list.push_back(i);
-  }
-  flush();
+  });
   if (most > 1.0)
     error->one(
         FLERR, Error::NOLASTLINE,

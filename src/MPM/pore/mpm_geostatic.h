@@ -17,6 +17,7 @@
 
 namespace LAMMPS_NS {
 class FixMPMMaterial;
+class FixMPMMixture;
 class MPMField;
 
 /** Stress of level ground at rest under its weight, in equilibrium at the nodes of a field. See
@@ -32,17 +33,18 @@ class MPMGeostatic : protected Pointers {
     double top;       ///< height of the surface of the ground [distance]
   };
 
-  /** gravity: force per mass, along an axis of the box. who: first words of error messages, which say what to
-   *  do if there is no level ground on a face of the box. Collective. */
+  /** gravity: force per mass, along an axis of the box. who: first words of error messages, which
+   *  say what to do if there is no level ground on a face of the box. Collective. */
   MPMGeostatic(class LAMMPS *, MPMField &, const double *gravity, const std::string &who);
 
   /** Height of a point, measured against gravity. */
   double height(int i) const;
 
-  /** Sets the effective stress of all points of the field, with a horizontal stress of K0 times the vertical
-   *  one. pressure(i): part of the pressure in internal forces of point i [pressure]. carried: weight that
-   *  something else carries, for each function of the height (see function_of()) [pressure*volume], or empty.
-   *  Material laws must keep a stress that points have initially, or the elastic strain. Collective. */
+  /** Sets the effective stress of all points of the field, with a horizontal stress of K0 times the
+   *  vertical one. pressure(i): part of the pressure in internal forces of point i [pressure].
+   *  carried: weight that something else carries, for each function of the height (see
+   *  function_of()) [pressure*volume], or empty. Material laws must keep a stress that points have
+   *  initially, or the elastic strain. Collective. */
   void set_stress(double K0, const std::function<double(int)> &pressure,
                   const std::vector<double> &carried = {});
 
@@ -55,10 +57,12 @@ class MPMGeostatic : protected Pointers {
   };
   static constexpr int BAND = 4;
 
-  /** Shape functions of the planes of nodes at point i of this field, or of another field on the same lattice.
-   *  Planes are numbered from the lowest one that reaches the ground. Returns the number of planes. */
+  /** Shape functions of the planes of nodes at point i of this field, or of another field on the
+   *  same lattice. Planes are numbered from the lowest one that reaches the ground. Returns the
+   *  number of planes. */
   int planes(const MPMField &, int i, Part list[BAND]) const;
-  /** The function of the height that describes the velocity of a plane of nodes, and its value there. */
+  /** The function of the height that describes the velocity of a plane of nodes, and its value
+   *  there. */
   int function_of(int plane, double &value) const;
 
   MPMField &field;
@@ -76,6 +80,35 @@ class MPMGeostatic : protected Pointers {
   void load(const std::vector<int> &list, const FixMPMMaterial *) const;
   void strain(const std::vector<int> &list, const FixMPMMaterial *, int first) const;
   void check_laws();
+};
+
+/** Water at rest in level ground and above it, where the water is a separate field (fix
+ *  mpm/mixture). See mpm_geostatic_command.cpp. */
+class MPMGeostaticWater : protected Pointers {
+ public:
+  /** ground: the soil of the mixture. who: first words of error messages. */
+  MPMGeostaticWater(class LAMMPS *, const MPMGeostatic &ground, const FixMPMMixture &,
+                    const std::string &who);
+
+  /** Sets the pressure of all points of the water by changing their volume. Returns the weight of
+   *  the soil that the water carries, for each function of the height (MPMGeostatic::set_stress()).
+   *  Collective. */
+  std::vector<double> set_pressure();
+
+ private:
+  const MPMGeostatic &ground;
+  const FixMPMMixture &mixture;
+  MPMField &soil, &water;
+  const std::string who;
+  double surface, density;
+  int nplanes = 0;
+
+  void find_water();
+  void find_volumes(std::vector<double> &volumes) const;
+  double strain(const std::vector<double> &pressure) const;
+  /** Stops with an error if the water does not come to rest. differs: from the pressure of its law;
+   *  left: share of its weight that is not carried. */
+  void check_rest(const std::vector<double> &pressure, double differs, double left) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -19,8 +19,8 @@ CommandStyle(mpm_geostatic,MPMGeostaticCommand);
 
 namespace LAMMPS_NS {
 
-/** Command mpm_geostatic: gives the points of a field the stress of level ground at rest under its weight
- *  (MPMGeostatic). */
+/** Command mpm_geostatic: gives the points of a field the stress of level ground at rest under its
+ *  weight (MPMGeostatic). */
 class MPMGeostaticCommand : public Command {
  public:
   MPMGeostaticCommand(class LAMMPS *lmp) : Command(lmp) {}

@@ -7,50 +7,52 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Soil (velocity v) and water (u) at the same place: grains have the share phi of the volume, water the
-   porosity n = 1 - phi. Points of soil have the effective stress and the dry mass, points of water the
-   pressure p and the density rho_f of the water in the pores, and the volume V that this water has by
-   itself; they stand for the volume V/n of the mixture.
+   Soil (velocity v) and water (u) at the same place: grains have the share phi of the volume, water
+   the porosity n = 1 - phi. Points of soil have the effective stress and the dry mass, points of
+   water the pressure p and the density rho_f of the water in the pores, and the volume V that this
+   water has by itself; they stand for the volume V/n of the mixture.
 
-   Momentum (S. Bandara, K. Soga, Comput. Geotech. 63 (2015) 199, whose points of water have the same):
+   Momentum (S. Bandara, K. Soga, Comput. Geotech. 63 (2015) 199, whose points of water have the
+   same):
 
      phi rho_s dv/dt = div s' - phi grad p + d (u - v) + phi rho_s g
      n rho_f du/dt   =         -  n  grad p - d (u - v) +  n  rho_f g
 
-   Grains do not change their volume. The balance of both masses then is one for the water along its path,
+   Grains do not change their volume. The balance of both masses then is one for the water along its
+   path,
 
      n/rho_f d(rho_f)/dt = - div U,    U = n u + phi v,
 
-   so that what strains the water is the flux of volume U over n. Outside of the soil, where n is 1, this is
-   div u: nothing happens to a point that comes into the soil but that it is strained with another velocity.
+   so that what strains the water is the flux of volume U over n. Outside of the soil this is div u.
 
-   At the nodes phi_i is the volume of grains over that of all that is there, and U_i = n_i u_i + phi_i v_i. The
-   pressure acts in all of the volume, of which water and grains together are the quadrature points, so that
-   there are neither gaps nor overlaps where the soil ends:
+   At the nodes phi_i is the volume of grains over that of all that is there, and U_i = n_i u_i +
+   phi_i v_i. The pressure acts in all of the volume, of which water and grains together are the
+   quadrature points, so that there are neither gaps nor overlaps where the soil ends:
 
-     F_i = sum_w V_w p_w grad N_i + sum_s V_s p_s grad N_i,    n_i F_i on the water,    phi_i F_i on the soil,
+     F_i = sum_w V_w p_w grad N_i + sum_s V_s p_s grad N_i,
+     n_i F_i on the water,    phi_i F_i on the soil,
 
-   with the volume V_s of the grains of a point of soil, and the mean pressure of the water around it,
+   with the volume V_s of the grains of a point of soil, and the mean pressure of the water around
+   it,
 
      p_s = sum_i N_is c_i p_i,    p_i = sum_w N_iw V_w p_w / sum_w N_iw V_w,
 
-   c_i: the share of the pores that is filled. No gradient of n is needed, and F_i sum to zero over the nodes. What
-   strains the water then is what makes the work of these forces that of its pressure, but for the time step:
+   c_i: the share of the pores that is filled. What strains the water then is what makes the work of
+   these forces that of its pressure, but for the time step:
 
-     dJ/J = dt div U_w + dt sum_i N_iw c_i sum_s N_is V_s div U_s / sum_w N_iw V_w,
+     dJ/J = dt div U_w + dt sum_i N_iw c_i sum_s N_is V_s div U_s / sum_w N_iw V_w.
 
-   where the second term is phi/n div U in soil with its pores full. As the first sum of F_i, for the water's own
-   volume, is there already, the water gets n_i F_i less that.
+   As the first sum of F_i, for the water's own volume, is there already, the water gets n_i F_i
+   less that.
 
-   Volumes at a node: that of grains, V_s, of the soil with its pores, V_m, of water, V_w. In soil,
-   saturated or not, phi = V_s/V_m whatever the points are like; where there is more water than the pores of
-   this soil have, as next to its surface, phi = V_s/(V_s + V_w): the larger one counts. Where pores are not
-   full, n_i is less by c_i, as next to no water must not bear a force. No volume of the lattice is
-   needed, and walls may cut cells.
+   Volumes at a node: that of grains, V_s, of the soil with its pores, V_m, of water, V_w. In soil
+   phi = V_s/V_m; where there is more water than the pores of this soil have, as next to its
+   surface, phi = V_s/(V_s + V_w): the larger one counts. Where pores are not full, n_i is less by
+   c_i, as next to no water must not bear a force.
 
-   Drag: w = u - v follows dw/dt = a - r w with the rate r = D (1/m_s + 1/m_w) and the acceleration a by all
-   other forces, both constant in the step: w is exp(-r dt) w + a (1 - exp(-r dt))/r. That is exact for a
-   difference that fades, and for seepage that is steady, however short the time of relaxation is.
+   Drag: w = u - v follows dw/dt = a - r w with the rate r = D (1/m_s + 1/m_w) and the acceleration
+   a by all other forces, both constant in the step: w is exp(-r dt) w + a (1 - exp(-r dt))/r, exact
+   for a difference that fades, and for seepage that is steady.
 ------------------------------------------------------------------------- */
 
 #include "pore/mpm_mixture.h"
@@ -60,22 +62,20 @@
 #include "comm.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_node_action.h"
-#include "field/mpm_passes.h"
 #include "field/mpm_point_batches.h"
 #include "force.h"
 #include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
-#include "update.h"
 #include "walls/fix_mpm_boundary.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 using namespace LAMMPS_NS;
@@ -83,22 +83,20 @@ using namespace MPM_NS;
 
 static constexpr int WIDTH = 8;    // reals of a node: with the old velocity, for both fields
 
-// sums of volumes vary with the places of points, of which pores have few: by how much more there is certainly
-// other water
+// sums of volumes vary with the places of points, of which pores have few: by how much more there
+// is certainly other water
 
 static constexpr double NOISE = 1.2, CERTAIN = 1.7;
 
-// Share of their pores from which on the pores of a node count as full. Below it, pressure acts on less than all grains, as
-// next to no water must not bear a force. Where water goes into dry soil, a large share holds its front back: with 0.5 a dry
-// bed took up 0.72, 0.80, and 0.76 of the water that it should with 12, 24, and 48 cells, and the less the more points a cell
-// had (0.55 with 16); with 0.2 this is 0.75, 0.86, and 0.93 (0.77). With 0.05 numerical errors add energy there.
+// Share of their pores from which on the pores of a node count as full. Below it, pressure acts on
+// less than all grains, as next to no water must not bear a force. Where water goes into dry soil,
+// a large share holds its front back: with 0.5 a dry bed took up 0.72, 0.80, and 0.76 of the water
+// that it should with 12, 24, and 48 cells, and the less the more points a cell had (0.55 with 16);
+// with 0.2 this is 0.75, 0.86, and 0.93 (0.77). With 0.05 numerical errors add energy there.
 
 static constexpr double WET = 0.2;
 
-/* ----------------------------------------------------------------------
-   each field has blocks for the sake of the other one: both are renewed together
-------------------------------------------------------------------------- */
-
+/** Each field has blocks for the sake of the other one: both are renewed together. */
 bool MPMMixture::stale() const
 {
   return !soil.field->map->valid || !water.field->map->valid;
@@ -109,8 +107,8 @@ void MPMMixture::couple_topology()
   if (stale()) soil.field->map->valid = water.field->map->valid = false;
 }
 
-/** Forces and old velocities of nodes are needed where soil and water may meet: while they are apart, nodes are as they
- *  would be without this fix. */
+/** Forces and old velocities of nodes are needed where soil and water may meet: while they are
+ *  apart, nodes are as they would be without this fix. */
 void MPMMixture::blocks_found()
 {
   if (!stale()) return;
@@ -130,10 +128,7 @@ void MPMMixture::topology_changed(MPMField &field)
   if (options.has(field.id())) lists_valid = false;
 }
 
-/* ----------------------------------------------------------------------
-   blocks that both have, and those with points that reach their nodes or images of these
-------------------------------------------------------------------------- */
-
+/** Blocks that both have, and those with points that reach their nodes or images of these. */
 void MPMMixture::list_blocks()
 {
   common.clear();
@@ -165,18 +160,15 @@ void MPMMixture::find_near(Phase &phase, const std::vector<std::array<int, 3>> &
       near[slot] = std::binary_search(keys.begin(), keys.end(),
                                       canonical_block(grid, grid.blocks[slot], corner));
   phase.reaches.assign(near.size(), 0);
-  for (const auto &a : phase.field->map->active) {
+  each_block(*phase.field, [&](const auto &a) {
     const int *const around = grid.blocks[a.slot].slot;
     phase.reaches[a.slot] = std::any_of(around, around + 27, [&](int slot) {
       return slot >= 0 && near[slot];
     });
-  }
+  });
 }
 
-/* ----------------------------------------------------------------------
-   nodes [8]: sums over points of their volume times a value, 0, 0, and of the volume
-------------------------------------------------------------------------- */
-
+/** Nodes [8]: sums over points of their volume times a value, 0, 0, and of the volume. */
 template <class Volumes>
 void MPMMixture::sum_volumes(Phase &phase, std::vector<double> &to, const Volumes &of)
 {
@@ -197,29 +189,22 @@ void MPMMixture::sum_volumes(Phase &phase, std::vector<double> &to, const Volume
   });
 }
 
-/* ----------------------------------------------------------------------
-   nodes [8] to the points that reach common ones: gather(run, first, n, base) with the nodes in tile_load
-------------------------------------------------------------------------- */
-
+/** Nodes [8] to the points that reach common ones: gather(run, first, n, base) with the nodes in
+ *  tile_load. */
 template <class Gather>
 void MPMMixture::from_nodes(const Phase &phase, double *nodes, const Gather &gather)
 {
-  MPMField &field = *phase.field;
-  MPMPointMap &map = *field.map;
-  for (const auto &a : map.active) {
-    if (!phase.reaches[a.slot]) continue;
-    int base[3];
-    map.tile_base(a, base);
-    field.kernel.load(map.tile_load, nodes, field.grid.blocks[a.slot].slot, a.box);
-    for (int k = a.first_run; k < a.last_run; k++) {
-      const auto &run = map.runs[k];
-      for (int i = run.first; i < run.last; i += BATCH)
-        gather(i, std::min(BATCH, run.last - i), base);
-    }
-  }
+  points_from(
+      nodes, *phase.field, phase.field->kernel,
+      [&](int slot) {
+        return phase.reaches[slot];
+      },
+      [&](const MPMPointMap::Run &run, const int *base) {
+        for (int i = run.first; i < run.last; i += BATCH)
+          gather(i, std::min(BATCH, run.last - i), base);
+      });
 }
 
-/** Volume of the grains of a point of soil. */
 double MPMMixture::grains(int i) const
 {
   return atom->rmass[i] / options.grain_density;
@@ -242,8 +227,8 @@ static double mean_stress(const double *tau)
   return (tau[0] + tau[1] + tau[2]) / 3.0;
 }
 
-/** Volume of all that is at a node over that of soil with its pores, from the ratio of sums over points: 1 unless there
- *  certainly is more water than in pores. */
+/** Volume of all that is at a node over that of soil with its pores, from the ratio of sums over
+ *  points: 1 unless there certainly is more water than in pores. */
 static double excess(double ratio)
 {
   if (ratio <= NOISE) return 1.0;
@@ -261,10 +246,7 @@ MPMMixtureShares::MPMMixtureShares(double grains, double with_pores, double wate
   soil_share = 1.0 - here * filled;
 }
 
-/* ----------------------------------------------------------------------
-   shares of the volume at the nodes; false: nowhere are both
-------------------------------------------------------------------------- */
-
+/** Shares of the volume at the nodes; false: nowhere are both. */
 bool MPMMixture::find_shares()
 {
   sum_volumes(soil, soil.volumes, [&](int i, double &all, double &value) {
@@ -310,8 +292,9 @@ bool MPMMixture::find_shares()
   return all;
 }
 
-/** Water that points in pores have at first and that does not fit in, as with another share than the porosity: nothing but the weight of all
- *  tells of it. At nodes that see soil only, and water all around, when both are together for the first time. */
+/** Water that points in pores have at first and that does not fit in, as with another share than
+ *  the porosity: nothing but the weight of all tells of it. At nodes that see soil only, and water
+ *  all around, when both are together for the first time. */
 void MPMMixture::look_for_overfull_pores()
 {
   static constexpr double WHOLE = 0.97, TOO_MUCH = 1.2;
@@ -335,10 +318,8 @@ void MPMMixture::look_for_overfull_pores()
         id, all[1] / pores, pores / all[2]);
 }
 
-/* ----------------------------------------------------------------------
-   sum over points of volume times mean stress times gradients: own() of a point is that over the initial volume
-------------------------------------------------------------------------- */
-
+/** Sum over points of volume times mean stress times gradients: own() of a point is that over the
+ *  initial volume. */
 template <class Stress>
 void MPMMixture::sum_forces(Phase &phase, std::vector<double> &to, const Stress &of)
 {
@@ -361,10 +342,7 @@ void MPMMixture::sum_forces(Phase &phase, std::vector<double> &to, const Stress 
   field.nodes.sum(to.data(), WIDTH, 4, 3);
 }
 
-/* ----------------------------------------------------------------------
-   before the momentum equation: forces on the nodes
-------------------------------------------------------------------------- */
-
+/** Before the momentum equation: forces on the nodes. */
 void MPMMixture::share_pressure()
 {
   if (!lists_valid) list_blocks();
@@ -424,18 +402,10 @@ void MPMMixture::share_pressure()
     }
 }
 
-/** Mean of exp(-t) for t from 0 to x. */
-static double mean_of_fading(double x)
-{
-  return x > 1.0e-8 ? -expm1(-x) / x : 1.0 - 0.5 * x;
-}
-
-/* ----------------------------------------------------------------------
-   Transfers that give points the velocity of the nodes smooth it where the water changes its speed, at the ends of the soil, in each step.
-   Over the heat of drag in a layer of so many cells that is 0.04 n (time in which drag lets a difference of velocities fade)/dt/cells,
-   measured with plugs of n = 0.4 (k = 5 to 50 mm/s, two speeds of sound, two time steps)
-------------------------------------------------------------------------- */
-
+/** Transfers that give points the velocity of the nodes smooth it where the water changes its
+ *  speed, at the ends of the soil, in each step. Over the heat of drag in a layer of so many cells
+ *  that is 0.04 n (time in which drag lets a difference of velocities fade)/dt/cells, measured with
+ *  plugs of n = 0.4 (k = 5 to 50 mm/s, two speeds of sound, two time steps) */
 void MPMMixture::warn_of_slow_flow()
 {
   static constexpr double LOSS = 0.04, WORTH_TELLING = 0.05, CELLS = 6.0, USUAL = 0.4;
@@ -456,11 +426,8 @@ void MPMMixture::warn_of_slow_flow()
                    id, options.water_id, cells);
 }
 
-/* ----------------------------------------------------------------------
-   Drag. A coefficient that depends on the difference of the velocities is that at its end: the one with which
-   drag leaves just this difference, between none and what no drag leaves
-------------------------------------------------------------------------- */
-
+/** Drag. A coefficient that depends on the difference of the velocities is that at its end: the one
+ *  with which drag leaves just this difference, between none and what no drag leaves. */
 void MPMMixture::add_drag(double dt)
 {
   dt_last = dt;
@@ -486,7 +453,7 @@ void MPMMixture::add_drag(double dt)
           options.drag_coefficient(node.porosity, node.here, node.density, difference);
       const double x = dt * node.rate / reduced;
       fade = exp(-x);
-      share = mean_of_fading(x);
+      share = mean_decay(x);
       double square = 0.0;
       for (int d = 0; d < 3; d++) {
         const double w = fade * before[d] + share * gain[d];
@@ -514,10 +481,8 @@ void MPMMixture::add_drag(double dt)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Contact and the like, which act before walls, are forces like others. What each wall does to the soil is kept
-------------------------------------------------------------------------- */
-
+/** Contact and the like, which act before walls, are forces like others. What each wall does to the
+ *  soil is kept. */
 void MPMMixture::note_action(MPMNodeAction &other)
 {
   if (options.drag == MPMMixtureOptions::NO_DRAG) return;
@@ -547,13 +512,11 @@ void MPMMixture::note_action(MPMNodeAction &other)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Where a wall has changed the velocity of the soil, but not that of the water, as a sieve does, what soil presses on it
-   with would have been part of the acceleration a, and drag on the water. Along the impulse of the wall, which is its
-   normal, soil there has the velocity that the wall leaves, as if it were infinitely heavy. The wall bears the
-   difference. Walls elsewhere may hold the water at the same node along other directions
-------------------------------------------------------------------------- */
-
+/** Where a wall has changed the velocity of the soil, but not that of the water, as a sieve does,
+ *  what soil presses on it with would have been part of the acceleration a, and drag on the water.
+ *  Along the impulse of the wall, which is its normal, soil there has the velocity that the wall
+ *  leaves, as if it were infinitely heavy. The wall bears the difference. Walls elsewhere may hold
+ *  the water at the same node along other directions. */
 void MPMMixture::correct_drag_at_walls()
 {
   if (options.drag == MPMMixtureOptions::NO_DRAG || !meets) return;
@@ -569,7 +532,7 @@ void MPMMixture::correct_drag_at_walls()
     const double before = dot(normal, at_water + 4) - dot(normal, at_soil + 4);
     const double gain = dot(normal, node.free_water) - dot(normal, at_soil) - before;
     const double x = dt_last * node.rate / at_water[3];
-    const double left = exp(-x) * before + mean_of_fading(x) * gain;
+    const double left = exp(-x) * before + mean_decay(x) * gain;
     const double change = dot(normal, at_soil) + left - dot(normal, at_water);
     for (int d = 0; d < soil.field->lattice.dim; d++) {
       reaction[d] = at_water[3] * change * normal[d];
@@ -589,11 +552,8 @@ bool MPMMixture::is_held(const Node &node, const double *normal) const
       along > ROUNDING * sqrt(dot(node.after_water, node.after_water));
 }
 
-/* ----------------------------------------------------------------------
-   nodes have their final velocities: the work of what has been shared, with the mean of these and the old ones. The
-   pressure takes from the motion what the water stores
-------------------------------------------------------------------------- */
-
+/** Nodes have their final velocities: the work of what has been shared, with the mean of these and
+ *  the old ones. The pressure takes from the motion what the water stores. */
 void MPMMixture::account_for_work()
 {
   const auto mean = [](const double *record, int d) {
@@ -617,10 +577,8 @@ void MPMMixture::account_for_work()
   if (water.field->ledger.on) water.field->ledger.internal -= on_water * unit;
 }
 
-/* ----------------------------------------------------------------------
-   the water's volume changes by the flux of both; its points are strained with its own velocity after this
-------------------------------------------------------------------------- */
-
+/** The water's volume changes by the flux of both; its points are strained with its own velocity
+ *  after this. */
 void MPMMixture::share_strain()
 {
   if (!meets) return;
@@ -698,42 +656,30 @@ void MPMMixture::share_strain()
   field.jacobians.forget();
 }
 
-/* ----------------------------------------------------------------------
-   Of waves in the mixture, without drag the fastest: c^2 < K/rho_f + K phi/(n rho_s) + M/(phi rho_s) with the bulk
-   modulus K of the water and the modulus M of the soil; drag slows them down
-------------------------------------------------------------------------- */
-
+/** Of waves in the mixture, without drag the fastest: c^2 < K/rho_f + K phi/(n rho_s) + M/(phi
+ *  rho_s) with the bulk modulus K of the water and the modulus M of the soil; drag slows them
+ *  down. */
 int MPMMixture::fastest_wave(const Phase &phase, double &most, double &speed) const
 {
   MPMField &field = *phase.field;
   double c[BATCH];
-  int list[BATCH], n = 0, fastest = -1;
-  const FixMPMMaterial *material = nullptr;
-  const auto flush = [&]() {
-    if (n == 0) return;
-    load_state(field, *field.batch, list, n, material);
+  int fastest = -1;
+  each_material_batch(field, [&](const std::vector<int> &list, const FixMPMMaterial *material) {
+    load_state(field, *field.batch, list.data(), (int) list.size(), material);
     material->material->wave_speed(*field.batch, c);
-    for (int p = 0; p < n; p++) {
+    for (std::size_t p = 0; p < list.size(); p++) {
       const double *const v = atom->v[list[p]];
       if (c[p] > most) fastest = list[p];
       most = std::max(most, c[p]);
       speed = std::max(speed, sqrt(dot(v, v)));
     }
-    n = 0;
-  };
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
-    const FixMPMMaterial *const mine = field.material_of(i);
-    if (mine != material || n == BATCH) flush();
-    material = mine;
-    if (material) list[n++] = i;
-  }
-  flush();
+  });
   return fastest;
 }
 
-/** Of all points of both, once they have met. It is that of the rank with the fastest of them, of the phase with the
- *  larger part in it. Also before a step, where it is not known which blocks points are in. */
+/** Of all points of both, once they have met. It is that of the rank with the fastest of them, of
+ *  the phase with the larger part in it. Also before a step, where it is not known which blocks
+ *  points are in. */
 double MPMMixture::stable_dt(const MPMField &field, tagint &tag) const
 {
   const double none = std::numeric_limits<double>::max();
@@ -756,7 +702,6 @@ double MPMMixture::stable_dt(const MPMField &field, tagint &tag) const
   return field.lattice.h / (sqrt(square[0] + square[1]) + most[4]);
 }
 
-/** Has a point of soil or water, on any rank, this material? */
 bool MPMMixture::shares_points(const FixMPMMaterial &material) const
 {
   int mine = 0, any;

@@ -9,9 +9,10 @@
 #ifndef LMP_MPM_MIXTURE_H
 #define LMP_MPM_MIXTURE_H
 
+#include "declare/option.h"
 #include "field/mpm_reach.h"
+#include "grains/mpm_drag.h"
 #include "pointers.h"
-#include "pore/mpm_mixture_options.h"
 
 #include <array>
 #include <cstdint>
@@ -22,8 +23,33 @@ namespace LAMMPS_NS {
 class MPMField;
 class MPMNodeAction;
 
-/** Shares of soil and water in the volume at a node, from the volumes there of the grains, of the soil with its pores,
- *  and of the water. */
+/** Keywords of fix mpm/mixture. */
+struct MPMMixtureOptions {
+  enum Drag { NO_DRAG, DARCY, SPHERES };
+
+  std::string soil_id, water_id;
+  double grain_density = 0.0, viscosity = 0.0;    ///< viscosity: read as pressure, kept as mass
+  Drag drag = NO_DRAG;
+  double permeability = 0.0;          ///< intrinsic [area]
+  double reference_porosity = 0.0;    ///< porosity of that permeability; 0: it holds for any
+  double diameter = 0.0;              ///< of the grains
+  MPM_NS::SphereDrag::Law spheres = MPM_NS::SphereDrag::NONE;
+
+  MPM_NS::Options declare();
+  /** Is this field (ID) the soil or the water? */
+  bool has(const std::string &field) const { return field == soil_id || field == water_id; }
+
+  /** Drag per volume of soil and velocity difference [mass/(volume time)]. porosity: of the soil;
+   *  here: porosity at the node, which differs at the end of the soil and belongs to the velocity
+   *  difference. */
+  double drag_coefficient(double porosity, double here, double water_density,
+                          double difference) const;
+  /** Is the drag coefficient independent of the velocity difference? */
+  bool drag_is_linear() const { return drag != SPHERES; }
+};
+
+/** Shares of soil and water in the volume at a node, from the volumes there of the grains, of the
+ *  soil with its pores, and of the water. */
 struct MPMMixtureShares {
   double here;          ///< porosity
   double porosity;      ///< porosity of the soil itself, which differs at its end
@@ -34,14 +60,15 @@ struct MPMMixtureShares {
   MPMMixtureShares(double grains, double with_pores, double water);
 };
 
-/** Soil and water at the same place: what they share at nodes in a step, in the order of the functions. */
+/** Soil and water at the same place: what they share at nodes in a step, in the order of the
+ *  functions. */
 class MPMMixture : protected Pointers {
  public:
   struct Phase {
     MPMField *field = nullptr;
     MPMReach reach;
-    std::vector<char>
-        reaches;    // [block] do its points reach nodes that the other phase may have?
+    // [block] do its points reach nodes that the other phase may have?
+    std::vector<char> reaches;
     std::vector<double> volumes;    // [node][8] sums over points: see find_shares()
   };
   Phase soil, water;
@@ -138,8 +165,8 @@ class MPMMixture : protected Pointers {
   template <class Gather> void from_nodes(const Phase &, double *nodes, const Gather &);
   bool find_shares();
   bool is_held(const Node &, const double *normal) const;
-  /** Raises most (wave speed) and speed (of points) to the maxima on this rank. Returns the point with the fastest
-   *  wave, or -1 if none is faster than most. */
+  /** Raises most (wave speed) and speed (of points) to the maxima on this rank. Returns the point
+   *  with the fastest wave, or -1 if none is faster than most. */
   int fastest_wave(const Phase &, double &most, double &speed) const;
 };
 

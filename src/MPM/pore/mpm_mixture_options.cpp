@@ -6,17 +6,14 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "pore/mpm_mixture_options.h"
+#include "pore/mpm_mixture.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double PI = 3.14159265358979323846;
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/mixture SOIL WATER GRAIN_DENSITY VISCOSITY drag ...
-------------------------------------------------------------------------- */
-
+/** fix ID all mpm/mixture SOIL WATER GRAIN_DENSITY VISCOSITY drag ... */
 Options MPMMixtureOptions::declare()
 {
   using namespace option;
@@ -65,13 +62,10 @@ Options MPMMixtureOptions::declare()
   return o;
 }
 
-/* ----------------------------------------------------------------------
-   Laws for spheres have the superficial velocity n w and the gradient of pressure in the drag ("model B"):
-   in steady flow - grad p = N K n w with N spheres in a volume, and as n grad p is the drag here, it is
-   n^2 N K w. Where sums over points smear the end of the soil, n w, which is the same on both sides, has the
-   porosity there
-------------------------------------------------------------------------- */
-
+/** Laws for spheres have the superficial velocity n w and the gradient of pressure in the drag
+ *  ("model B"): in steady flow - grad p = N K n w with N spheres in a volume, and as n grad p is
+ *  the drag here, it is n^2 N K w. Where sums over points smear the end of the soil, n w, which is
+ *  the same on both sides, has the porosity there. */
 double MPMMixtureOptions::drag_coefficient(double n, double here, double water_density,
                                            double difference) const
 {
@@ -87,9 +81,4 @@ double MPMMixtureOptions::drag_coefficient(double n, double here, double water_d
   const SphereDrag law = {spheres, water_density, viscosity};
   const double number = 6.0 * (1.0 - n) / (PI * diameter * diameter * diameter);
   return here * here * number * law.on_sphere(diameter, here * difference, n, law.hindrance(n));
-}
-
-bool MPMMixtureOptions::drag_is_linear() const
-{
-  return drag != SPHERES;
 }

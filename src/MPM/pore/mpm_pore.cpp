@@ -14,32 +14,28 @@
      S dp/dt = - alpha div v - div w,   w = - k (grad p - rho_f g),   S = n/K_f + (alpha - n)/K_s,
 
    sigma' is the stress of the material, w the volume of water that flows through a unit of area,
-   and k the mobility. The acceleration of the water relative to that of the soil is neglected, and
-   both accelerations are in the equation for w; mpm_pore_motion.cpp has both (u-v-p). With
-   Forchheimer's term,
-   -(grad p - rho_f g) = w/k + b |w| w, which is a quadratic equation for the length of w.
+   and k the mobility. The acceleration of the water relative to that of the soil is neglected;
+   mpm_pore_motion.cpp has it (u-v-p). With Forchheimer's term, -(grad p - rho_f g) = w/k + b |w| w.
 
    On nodes, with C_p = S_p V_p, and D the matrix of sum_p alpha V_p N_ip grad N_jp,
 
-     p_i = sum_p C_p N_ip (p_p + g_p . (x_i - x_p))/C_i,    M dv/dt = ... + D^T p,    C dp/dt = - D v - ...,
+     p_i = sum_p C_p N_ip (p_p + g_p . (x_i - x_p))/C_i,
+     M dv/dt = ... + D^T p,    C dp/dt = - D v - ...,
 
    so that the pressure sum_i N_ip p_i of each point acts in forces, and the volume that the motion
    squeezes out goes to nodes with the same weights: the water stores the work that the pressure
-   takes from the motion, for any position of points in their cells. Both matter. If points had
-   their own pressures in forces, several points per cell would ask for more constraints than the
-   velocities of the nodes can satisfy (locking). As D maps onto what D^T sees, motion never excites
-   pressures that make no force on nodes, such as one that alternates from node to node. Only other
-   changes of the pressure do: drained faces, see mpm_pore_surface.cpp.
+   takes from the motion. If points had their own pressures in forces, several points per cell would
+   ask for more constraints than the velocities of the nodes can satisfy (locking). As D maps onto
+   what D^T sees, motion never excites pressures that make no force on nodes, such as one that
+   alternates from node to node. Only drained faces do, see mpm_pore_surface.cpp.
 
    Time. The update of p uses the new v: symplectic Euler, stable up to 2/omega of undrained waves
    without flow. An explicit step of the flow multiplies a pressure by a = 1 - lambda dt; together
    they are stable up to (omega dt)^2 < 2 (1 + a): not at all near the explicit limit a = -1. Stages
-   of RKL2 have a > 0 whatever their number is (their greatest share is 2b < 1 with b = (s^2 + s -
-   2)/(2 s^2 + 2 s)). Hence stages begin at half of that limit, and waves and flow do not reduce
-   each other's limit. A flow for several steps (mpm_pore_wait.cpp) has one stage up to the full
+   of RKL2 have a > 0 whatever their number is. Hence stages begin at half of that limit, and waves
+   and flow do not reduce each other's limit. A flow for several steps has one stage up to the full
    limit: this is the limit of nodes at a corner that hardly see a point, and of points in the
-   middle of cells, where alternating pressures make no force, while a > 0 for the pressures that
-   waves excite.
+   middle of cells, where alternating pressures make no force.
 
    The motion changes the volume of a point by exactly det(I + dt L) - 1, and water fills the
    change.
@@ -54,12 +50,10 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_node_sums.h"
 #include "field/mpm_passes.h"
-#include "field/mpm_stencil.h"
 #include "force.h"
 #include "material/material.h"
 #include "material/material_point.h"
 #include "math/matrix.h"
-#include "math_const.h"
 #include "step/mpm_stages.h"
 
 #include <algorithm>
@@ -70,8 +64,6 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/* ---------------------------------------------------------------------- */
 
 MPMPore::MPMPore(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
                  const MPMPoreSurface::Conditions &conditions, const double *gravity, double relax,
@@ -90,13 +82,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
   soils.clear();
   quadratic.clear();
   bool dries = false;
-  std::vector<signed char> mine(field.materials.size(), 0), here(field.materials.size());
-  for (int i = 0; i < atom->nlocal; i++) {
-    const auto *const material = field.is_point(i) ? field.material_of(i) : nullptr;
-    for (std::size_t k = 0; k < mine.size() && material; k++)
-      if (field.materials[k] == material) mine[k] = 1;
-  }
-  MPI_Allreduce(mine.data(), here.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
+  const std::vector<signed char> here = present_materials(field, world);
   slowest = waves = least_storage = std::numeric_limits<double>::max();
   of_storage = 0.0;
   for (std::size_t k = 0; k < here.size(); k++)
@@ -128,18 +114,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
     return s.of.law != MPMPoreSoil::CONSTANT;
   });
   if (surface.any()) surface.init(dries, varies);
-
-  const MPMStencil stencil(field);
-  constexpr int SAMPLES = 4096;
-  steepest = 0.0;
-  for (int k = 0; k < SAMPLES; k++) {
-    int node;
-    double w[4], slope[4], sum = 0.0;
-    const int n = stencil.weights((k + 1.0e-3) / SAMPLES, node, w, slope);
-    for (int j = 0; j < n; j++)
-      if (w[j] > 0.0) sum += slope[j] * slope[j] / w[j];
-    steepest = std::max(steepest, sum);
-  }
+  steepest = steepest_function(field);
 }
 
 /** Sets up means next to interfaces for soils of different permeability in one field
@@ -199,9 +174,21 @@ double MPMPore::mobility(const Soil &s, int i, double J, const double *formula) 
 }
 
 /** Weight of the water, in pressure per length. */
-double MPMPore::weight(int d) const
+std::array<double, 3> MPMPore::weight() const
 {
-  return water.density * gravity[d] * force->nktv2p;
+  std::array<double, 3> along = {};
+  for (int d = 0; d < field.lattice.dim; d++) along[d] = water.density * gravity[d] * force->nktv2p;
+  return along;
+}
+
+/** Magnitude of a gradient of pressure less that of water at rest. */
+double MPMPore::push(const double *gradient) const
+{
+  const auto at_rest = weight();
+  double square = 0.0;
+  for (int d = 0; d < field.lattice.dim; d++)
+    square += (gradient[d] - at_rest[d]) * (gradient[d] - at_rest[d]);
+  return sqrt(square);
 }
 
 MPMPoreMotion::Pores MPMPore::pores(const Soil &s, int i, double J, double mobility) const
@@ -216,13 +203,8 @@ double MPMPore::at_surface(const Soil &s, int i, double J, double mobility, cons
 {
   if (motion) return motion->response(i, pores(s, i, J, mobility));
   if (quadratic.empty()) return mobility;
-  double square = 0.0;
-  for (int d = 0; d < field.lattice.dim; d++)
-    square += (row[1 + d] - weight(d)) * (row[1 + d] - weight(d));
-  return secant_mobility(mobility, quadratic[i], sqrt(square));
+  return secant_mobility(mobility, quadratic[i], push(row + 1));
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Upper bound of the mobility of a point with layers; k: its own mobility. */
 double MPMPore::most_of_layers(int i, double k) const
@@ -234,26 +216,23 @@ double MPMPore::most_of_layers(int i, double k) const
  *  the flow that points have by their gradient. */
 void MPMPore::find_layers(const MPMRows &state, const double *formula)
 {
-  const int dim = field.lattice.dim;
-  const double density = water.density * force->mvv2e * force->nktv2p;
+  const double density = inertial_density();
   volumes.resize(atom->nmax);
-  const auto each =
-      [&](const auto
-              &value) {    // value(soil, point, J, permeability) of points, and their volumes
-        return
-            [&, value](const MPMPointMap::Run &run, int first, int n, double *values, double *V) {
-              const Soil *const s = soil(run.material);
-              if (!s) return false;
-              double buffer[BATCH];
-              const double *const ratios = field.jacobians.get(field, first, n, buffer);
-              for (int p = 0; p < n; p++) {
-                const int i = first + p;
-                V[p] = volumes[i] = ratios[p] * atom->vfrac[i];
-                values[p] = value(s->of, i, ratios[p], mobility(*s, i, ratios[p], formula));
-              }
-              return true;
-            };
-      };
+  // value(soil, point, J, permeability) of points, and their volumes
+  const auto each = [&](const auto &value) {
+    return [&, value](const MPMPointMap::Run &run, int first, int n, double *values, double *V) {
+      const Soil *const s = soil(run.material);
+      if (!s) return false;
+      double buffer[BATCH];
+      const double *const ratios = field.jacobians.get(field, first, n, buffer);
+      for (int p = 0; p < n; p++) {
+        const int i = first + p;
+        V[p] = volumes[i] = ratios[p] * atom->vfrac[i];
+        values[p] = value(s->of, i, ratios[p], mobility(*s, i, ratios[p], formula));
+      }
+      return true;
+    };
+  };
   if (quadratic.empty()) {
     layers->find(each([](const MPMPoreSoil &, int, double, double k) {
       return k;
@@ -261,10 +240,7 @@ void MPMPore::find_layers(const MPMRows &state, const double *formula)
     return;
   }
   layers->find(each([&](const MPMPoreSoil &s, int i, double J, double k) {
-    double square = 0.0;
-    for (int d = 0; d < dim; d++)
-      square += (state[i][1 + d] - weight(d)) * (state[i][1 + d] - weight(d));
-    return secant_mobility(k, s.quadratic_at(J, density), sqrt(square));
+    return secant_mobility(k, s.quadratic_at(J, density), push(state[i] + 1));
   }));
   layers->find_means(each([](const MPMPoreSoil &, int, double, double k) {
                        return 1.0 / std::max(k, MPMLayerMean::LEAST);
@@ -293,11 +269,11 @@ void MPMPore::limit_slopes(const Soil &s, int first, int n, const MPMRows &state
                            MPMNodeScalar::Rows row) const
 {
   const int dim = field.lattice.dim;
-  const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
+  const auto along = weight();
   for (int p = 0; p < n; p++) {
     std::copy_n(state[first + p] + 1, dim, row[p]);
     row[p][3] = state[first + p][0];
-    MPMPoreSuction::limit_slope(s.of, row[p][3], along, field.lattice, row[p]);
+    MPMPoreSuction::limit_slope(s.of, row[p][3], along.data(), field.lattice, row[p]);
   }
 }
 
@@ -330,7 +306,7 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
     list->resize(atom->nmax);
   const bool open = surface.any(), plain = !suction && !open && quadratic.empty();
   if (!quadratic.empty()) quadratic.resize(atom->nmax);
-  const double density = water.density * force->mvv2e * force->nktv2p;
+  const double density = inertial_density();
   if (warmth)
     for (auto *list : {&grown, &warm}) clear_points(*list, atom);
   if (suction) suction->begin(atom->nmax, rate_of_lag(), rate_of_waves());
@@ -391,12 +367,9 @@ void MPMPore::points_to_nodes(const MPMRows &state, const double *formula)
       false);
 }
 
-/* ----------------------------------------------------------------------
-   alternates between the best fit of nodes to values and gradients, and of gradients to nodes.
-   Inside a body a linear pressure is found at once; next to surfaces, where nodes have points on
-   one side, the error falls with each iteration
-------------------------------------------------------------------------- */
-
+/** Alternates between the best fit of nodes to values and gradients, and of gradients to nodes.
+ *  Inside a body a linear pressure is found at once; next to surfaces, where nodes have points on
+ *  one side, the error falls with each iteration. */
 void MPMPore::find_gradients(const MPMRows &state, const double *formula)
 {
   constexpr int TURNS = 100;
@@ -422,8 +395,6 @@ void MPMPore::find_gradients(const MPMRows &state, const double *formula)
     most = all[1];
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double *formula,
                          bool waited)
@@ -483,27 +454,24 @@ void MPMPore::separate_water()
       return surface.is_near(slot);
     });
   }
-  for (const auto &run : field.map->runs) {
+  each_point(field, [&](const auto &run, int i) {
     const Soil *const s = soil(run.material);
-    for (int i = run.first; s && i < run.last; i++) {
-      const double J = field.points->jacobian(i);
-      const auto here = pores(*s, i, J, conductance[i] / (J * atom->vfrac[i]));
-      if (layers && layers->at_interface(i)) {
-        const auto r = at_interface(i);
-        motion->begin_point(i, here, &r, layers->normal(i));
-      } else {
-        motion->begin_point(i, here);
-      }
+    if (!s) return;
+    const double J = field.points->jacobian(i);
+    const auto here = pores(*s, i, J, conductance[i] / (J * atom->vfrac[i]));
+    if (layers && layers->at_interface(i)) {
+      const auto r = at_interface(i);
+      motion->begin_point(i, here, &r, layers->normal(i));
+    } else {
+      motion->begin_point(i, here);
     }
-  }
+  });
   motion->separate();
 }
 
-/* ----------------------------------------------------------------------
-   int N p n dA = int (p grad N + N grad p) dV, where the first term is the force of the pressure on
-   nodes: nothing is left inside the soil, and at the surface it is the force of the water
-------------------------------------------------------------------------- */
-
+/** The surface force int N p n dA = int (p grad N + N grad p) dV, where the first term is the force
+ *  of the pressure on nodes: nothing is left inside the soil, and at the surface it is the force of
+ *  the water. */
 void MPMPore::find_surface_force(const MPMRows &state, const std::vector<char> &near,
                                  std::vector<double> &force) const
 {
@@ -541,8 +509,6 @@ void MPMPore::find_forces_below_surface(const std::vector<char> &near,
   map(false, of_water);
   map(true, of_all);
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMPore::moves_first() const
 {
@@ -617,7 +583,8 @@ void MPMPore::find_rates(std::vector<double> &inflow)
 {
   const double dt = field.step_dt(), cell_in_step = field.lattice.h / dt;
   const int dim = field.lattice.dim;
-  const double along[3] = {weight(0), weight(1), dim == 3 ? weight(2) : 0.0};
+  const auto weights = weight();
+  const double *const along = weights.data();
   const bool plain = !motion && !layers && !suction && quadratic.empty();
   const auto flow = [&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
     double power[3] = {0.0, 0.0, 0.0};

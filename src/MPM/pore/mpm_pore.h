@@ -13,12 +13,14 @@
 #include "diffusion/mpm_layer_mean.h"
 #include "diffusion/mpm_node_scalar.h"
 #include "field/mpm_forces.h"
+#include "force.h"
 #include "pointers.h"
 #include "pore/mpm_pore_motion.h"
 #include "pore/mpm_pore_soil.h"
 #include "pore/mpm_pore_suction.h"
 #include "pore/mpm_pore_surface.h"
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -36,8 +38,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   MPMField &field;
   MPMNodeScalar nodes;
   MPMPoreSurface surface;
-  std::unique_ptr<MPMPoreMotion>
-      motion;    ///< null: water has no inertia relative to the soil (u-p)
+  /** Null: water has no inertia relative to the soil (u-p) */
+  std::unique_ptr<MPMPoreMotion> motion;
 
   /** gravity: force per mass, which acts on the water, too. */
   MPMPore(class LAMMPS *, MPMField &, const MPMPoreWater &, const MPMPoreSurface::Conditions &,
@@ -53,7 +55,7 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   bool has_water() const { return !soils.empty(); }
 
   /** Let water flow only in one of several steps, for the duration of all of them
-   *  (mpm_pore_wait.cpp). ratios: [n] J after the last flow, 0 where it is not known. Without this
+   *  (mpm_pore_rates.cpp). ratios: [n] J after the last flow, 0 where it is not known. Without this
    *  call water flows in each step. Call before init(). */
   void wait_with(double *const &ratios) { waiting = &ratios; }
   /** In a step without flow, before points go to nodes: find the pressure in forces. */
@@ -205,8 +207,8 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   double largest = 0.0;     // largest volume of a point in the last step, if water waits
   std::vector<Layers> lie;
   std::unique_ptr<MPMPoreSuction> suction;    // of soils that can dry
-  std::unique_ptr<MPMLayerMean>
-      layers;    // if soils differ in permeability; null: each point uses its own
+  // if soils differ in permeability; null: each point uses its own
+  std::unique_ptr<MPMLayerMean> layers;
 
   // of points in this step
 
@@ -216,12 +218,12 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   std::vector<double> mean;           // [n] pressure interpolated from the nodes, at the start
   std::vector<double> grown, warm;    // [n] growth of volume by warmth in this step; temperature
   double *const *warmth = nullptr;    // null: no soil warms
-  std::vector<double>
-      squeezed;    // [n] volume; after take_motion() rate at which deformation drives water out
+  // [n] volume; after take_motion() rate at which deformation drives water out
+  std::vector<double> squeezed;
   std::vector<double> quadratic;    // [n] of the resistance, if any point has such a term
   std::vector<double> volumes;      // [n] with layers, times the relative permeability
-  std::vector<double> linear_mean,
-      quadratic_mean;             // [n] with layers: resistances across interfaces
+  // [n] with layers: resistances across interfaces
+  std::vector<double> linear_mean, quadratic_mean;
   std::vector<double> of_flow;    // [node][8] at nodes next to the surface
   std::vector<double> unseen;     // [node] mean of what nodes do not see of the pressures of points
 
@@ -254,7 +256,10 @@ class MPMPore : public MPMNodePressure, protected Pointers {
   double rate_of_waves() const;
   double rate_of_lag() const;
   double mobility(const Soil &, int i, double J, const double *formula) const;
-  double weight(int d) const;
+  std::array<double, 3> weight() const;
+  double push(const double *gradient) const;
+  /** Density of the water in units of pressure over velocity squared. */
+  double inertial_density() const { return water.density * force->mvv2e * force->nktv2p; }
   MPMPoreResistance at_interface(int i) const;
   double most_of_layers(int i, double k) const;
   MPMPoreMotion::Pores pores(const Soil &, int i, double J, double mobility) const;

@@ -10,9 +10,12 @@
 
 #include "atom.h"
 #include "base/mpm_options.h"
+#include "base/mpm_pair_styles.h"
 #include "base/mpm_points.h"
 #include "base/mpm_state.h"
 #include "comm.h"
+#include "contact/mpm_leaks.h"
+#include "contact/pair_mpm_penalty.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
@@ -21,6 +24,7 @@
 #include "input.h"
 #include "material/material.h"
 #include "math_const.h"
+#include "update.h"
 #include "variable.h"
 
 #include <algorithm>
@@ -80,9 +84,6 @@ void MPMPoreFlow::take_motion(MPMField &field)
   if (step_flows) in(field).take_motion(waited.time + field.step_dt());
 }
 
-/** Must water flow in each step if every is not given? It must with effects that cannot wait, with
- *  input that varies from step to step, and with free surfaces, whose flow is more exact if less of
- *  it comes at once. */
 bool MPMPoreFlow::needs_each_step() const
 {
   const bool differs =
@@ -176,7 +177,6 @@ void MPMPoreFlow::evaluate_variables()
   });
 }
 
-/** Finds the water of new points from their pressure. */
 void MPMPoreFlow::weigh_points()
 {
   if (!options.can_dry()) return;
@@ -213,23 +213,12 @@ double MPMPoreFlow::longest_wait() const
   return dt * std::floor(MathConst::MY_PI / turns * NEARLY);
 }
 
-/** Longest flow, in limits of an explicit step. */
-double MPMPoreFlow::longest_flow() const
-{
-  return options.most_stages < 3 ? 0.5 : MPMSuperStep::reach(options.most_stages);
-}
-
 /** Number of stages. One is enough up to the explicit limit if steps of the motion are shorter than
  *  half of it (see mpm_pore.cpp). */
 int MPMPoreFlow::count_stages(double duration, double limit) const
 {
   const bool one = duration <= 0.5 * limit || (waited.steps > 0.0 && duration <= limit * NEARLY);
   return one ? 1 : std::max(3, MPMSuperStep::count(duration, limit, options.most_stages));
-}
-
-void MPMPoreFlow::begin_step()
-{
-  begin(step_flows = is_time_to_flow());
 }
 
 /** The same with or without flow. */
@@ -247,11 +236,6 @@ void MPMPoreFlow::begin(bool with_flow)
   if (with_flow) watch.watch_inertia();
   if (with_flow) watch.look_for_shut_pores();
   gradients_known = true;
-}
-
-void MPMPoreFlow::separate_inertia()
-{
-  for (auto *field : wet) field->separate_water();
 }
 
 void MPMPoreFlow::find_greatest_rates()
@@ -352,8 +336,6 @@ void MPMPoreFlow::advance()
   flows_known = false;
 }
 
-/** Takes the pressures at the end of an implicit step, which were solved together with the
- *  motion. */
 void MPMPoreFlow::take_solution()
 {
   const double dt = fields[0]->field.step_dt();
@@ -375,7 +357,6 @@ double MPMPoreFlow::stable_dt(const MPMField &field, tagint &tag) const
   return longest_flow() * limit;
 }
 
-/** Pressure of a point between two flows. */
 double MPMPoreFlow::pressure_now(int i) const
 {
   if (waited.steps == 0.0) return points.pressure[i][0];
@@ -435,4 +416,170 @@ double MPMPoreFlow::memory_usage() const
   double bytes = steps.memory_usage() + formula_values.capacity() * sizeof(double);
   for (const auto &field : fields) bytes += field->memory_usage();
   return bytes;
+}
+
+MPMPoreWatch::MPMPoreWatch(LAMMPS *lmp, const MPMPoreOptions &options, const MPMPorePoints &points,
+                           const MPMPoreFlow &flow, const std::string &id) :
+    Pointers(lmp),
+    options(options), points(points), flow(flow), id(id)
+{
+}
+
+void MPMPoreWatch::start(bool neglects_inertia)
+{
+  watched.points = -1;    // velocities may have been set since the last run
+  watched.flows = 0;
+  measures_inertia = neglects_inertia && !inertia_known;
+}
+
+void MPMPoreWatch::look_for_leaks()
+{
+  if (leaks_known) return;
+  leaks_known = true;
+  for (auto *mine : flow.wet) {
+    const auto &all = mine->field.materials;
+    if (std::all_of(all.begin(), all.end(), [&](const auto *material) {
+          return options.has(material->id);
+        }))
+      continue;
+    const auto leaks = find_leaks(mine->field, world, [&](const FixMPMMaterial *material) {
+      return options.has(material->id);
+    });
+    if (leaks.nodes && comm->me == 0)
+      error->warning(
+          FLERR,
+          "Fix mpm/pore: material without water is so thin that water leaks through it, at {} "
+          "nodes "
+          "of fix mpm {}, one of them at {:.6g} {:.6g} {:.6g}: let it have three node spacings",
+          leaks.nodes, mine->field.id(), leaks.first[0], leaks.first[1], leaks.first[2]);
+  }
+}
+
+void MPMPoreWatch::look_for_shut_pores()
+{
+  if (shut_known) return;
+  tagint mine = MAXTAGINT, lowest;
+  for (const auto *field : flow.wet) mine = std::min(mine, field->shut_point());
+  MPI_Allreduce(&mine, &lowest, 1, MPI_LMP_TAGINT, MPI_MIN, world);
+  if (lowest == MAXTAGINT) return;
+  shut_known = true;
+  double here[2] = {0.0, 0.0}, worst[2];
+  for (int i = 0; mine == lowest && i < atom->nlocal; i++)
+    if (atom->tag[i] == lowest) {
+      here[0] = MPMPoints::get(atom)->jacobian(i);
+      here[1] = flow.soil_of(i)->shut();
+    }
+  MPI_Allreduce(here, worst, 2, MPI_DOUBLE, MPI_MAX, world);
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/pore: the pores of point {} are shut: it has {:.4g} of its initial volume, while "
+        "the "
+        "grains alone have {:.4g}, 1 - n0: use a law that becomes stiff before pores close, or "
+        "check n0, the stiffness of the soil, and its load",
+        lowest, worst[0], worst[1]);
+}
+
+void MPMPoreWatch::look_for_long_flow(double duration, double limit, double steps)
+{
+  if (long_known || options.every == MPMPoreOptions::AUTO || steps == 0.0 ||
+      duration <= limit * NEARLY ||
+      options.conditions[MPMPoreSurface::FREE].kind == MPMPoreCondition::CLOSED)
+    return;
+  long_known = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/pore every {}: {} steps have one flow, for {:.3g} times its explicit "
+                   "limit: curved surfaces of soft soil drain too fast then, by 1 to 2 % of the "
+                   "pressure: use every auto",
+                   options.every, steps + 1.0, duration / limit);
+}
+
+void MPMPoreWatch::look_for_smoothing(double duration)
+{
+  constexpr double MUCH = 0.02, OF_FLOW = 0.2;
+  if (smooth_known) return;
+  MPMPore::Smoothing most = {0.0, 0.0};
+  for (const auto *mine : flow.wet) {
+    const auto here = mine->smoothing(duration);
+    if (here.share * here.over_flow > most.share * most.over_flow) most = here;
+  }
+  smoothed += most.share;
+  if (smoothed < MUCH || most.over_flow < OF_FLOW) return;
+  smooth_known = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/pore {}: pressures that vary over {} node spacings have lost {:.0f} % "
+                   "to {}, {:.2g} times what flow has taken, and become too even in a long run: "
+                   "use {}, a smaller spacing, or fix mpm/implicit",
+                   id, MPMPore::Smoothing::WAVELENGTH, 100.0 * smoothed,
+                   options.waits() ? "every" : "relax", most.over_flow,
+                   options.waits() ? "every 1 and a small relax" : "a smaller relax");
+}
+
+void MPMPoreWatch::watch_inertia()
+{
+  constexpr int EACH = 4;
+  if (!measures_inertia || watched.flows++ % EACH) return;
+  MPMPore::Inertia mine, all;
+  for (const auto *field : flow.wet) mine.add(field->inertia(points.pressure));
+  const double here[4] = {mine.velocity, mine.flow, mine.gradient, mine.kinetic};
+  double sum[4];
+  MPI_Allreduce(here, sum, 4, MPI_DOUBLE, MPI_SUM, world);
+  all = {sum[0], sum[1], sum[2], sum[3]};
+  const double now = update->atime + (update->ntimestep - update->atimestep) * update->dt,
+               passed = now - watched.time;
+  if (watched.points == atom->natoms && passed > 0.0) {
+    const double rate = (sqrt(all.velocity) - sqrt(watched.last.velocity)) / passed;
+    watched.left_out += rate * rate * passed;
+    watched.flow += 0.5 * (all.flow + watched.last.flow) * passed;
+    watched.gradient += 0.5 * (all.gradient + watched.last.gradient) * passed;
+    watched.exchanged += fabs(all.kinetic - watched.last.kinetic);
+  }
+  watched.most = std::max(watched.most, all.kinetic);
+  watched.last = all;
+  watched.time = now;
+  watched.points = atom->natoms;
+}
+
+/** The acceleration that u-p neglects matters if its part in the energy that the flow
+ *  has dissipated is not small, and not small relative to the energy of the motion. Waves of a load
+ *  that comes at once satisfy the latter, too, but slow flow then dissipates far more in the end.
+ *  Ground that nearly rests has small accelerations relative to that of its weight, and runs that
+ *  end before the motion has come to rest for the first time do not allow a judgment yet. Warns
+ *  once. */
+void MPMPoreWatch::look_at_inertia()
+{
+  constexpr double OF_FLOW = 0.03, OF_MOTION = 0.02, OF_WEIGHT = 1.0e-4, UP_AND_DOWN = 1.5,
+                   FALLEN = 0.5;
+  const double part = watched.left_out;
+  const bool has_swung = watched.exchanged > UP_AND_DOWN * watched.most ||
+      watched.last.kinetic < FALLEN * watched.most;
+  if (inertia_known || !has_swung || !(part > OF_FLOW * watched.flow) ||
+      !(part > OF_MOTION * watched.exchanged) || !(part > OF_WEIGHT * watched.gradient))
+    return;
+  inertia_known = true;
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/pore {}: formulation u-p leaves out the acceleration of the water, which in these "
+        "runs is {:.0f} % of what drives its flow, in the root of the mean square: waves fade too "
+        "fast, and fast flow is wrong: use formulation u-v-p",
+        id, std::min(999.0, 100.0 * sqrt(part / watched.flow)));
+}
+
+void MPMPoreWatch::warn_of_contact() const
+{
+  if (comm->me || flow.wet.empty()) return;
+  for (const auto &style : MPMPairStyle::all(*force)) {
+    const auto *const penalty = dynamic_cast<const PairMPMPenalty *>(style.pair);
+    if (penalty ? penalty->has_friction() : style.name.compare(0, 4, "gran") == 0)
+      error->warning(
+          FLERR,
+          "Pair style {}: any friction on soils of fix mpm/pore {} is that of the total stress, "
+          "with "
+          "the pressure of the water: use fix mpm/contact, fix mpm/boundary with a region, or fix "
+          "mpm/rigid, which know what water bears",
+          style.name, id);
+  }
 }

@@ -7,24 +7,28 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   Pore water in implicit steps. The equations on nodes are those at the top of mpm_pore.cpp, with the pressure p at the end of the
-   step in forces and in flow (backward Euler), and the volume that the motion squeezes out in the whole step:
+   Pore water in implicit steps. The equations on nodes are those at the top of mpm_pore.cpp, with
+   the pressure p at the end of the step in forces and in flow (backward Euler), and the volume that
+   the motion squeezes out in the whole step:
 
-     C (p - p0) = - sum_p alpha dV_p N_ip + dt (flow to the node by p) - sum_p b_p V_p grad N_ip . grad (p - p0).
+     C (p - p0) = - sum_p alpha dV_p N_ip + dt (flow to the node by p)
+                  - sum_p b_p V_p grad N_ip . grad (p - p0).
 
-   Capacities, permeabilities, and the positions of the flow are those at the start of the step, as in explicit ones;
-   fix mpm/implicit solves for p and the motion together (mpm_coupled_pressure.cpp).
+   Capacities, permeabilities, and the positions of the flow are those at the start of the step; fix
+   mpm/implicit solves for p and the motion together (mpm_coupled_pressure.cpp).
 
-   The last term keeps pressures from alternating. Where water has no time to flow through a cell, the soil responds to the pressure
-   by D K^-1 D^T with its stiffness K. For a wave with q radians from node to node, this should be 1/M, with the modulus M of soil that
-   cannot widen. As for linear finite elements, it is 1 - q^2/4 of this for small q and nothing at q = pi, and a pressure that jumps from
-   cell to cell (load on one row of points, drained surface) would overshoot. The flow b grad(p - p0) with b = alpha^2 h^2/(4 M) makes
-   that 1 + O(q^4) (G. Aguilar, F. Gaspar, F. Lisbona, C. Rodrigo, Int. J. Numer. Methods Eng. 75 (2008) 1282). It moves water
-   between nodes, so that none is lost, and vanishes with the change of the pressure in a step: steady states do not depend on it.
-   With inertia M is that of a soil that does not get far in the step, M + rho h^2/dt^2.
+   The last term keeps pressures from alternating. Where water has no time to flow through a cell,
+   the soil responds to the pressure by D K^-1 D^T with its stiffness K. For a wave with q radians
+   from node to node, this should be 1/M, with the modulus M of soil that cannot widen. It is 1 -
+   q^2/4 of this for small q and nothing at q = pi. The flow b grad(p - p0) with b = alpha^2 h^2/(4
+   M) makes that 1 + O(q^4) (G. Aguilar, F. Gaspar, F. Lisbona, C. Rodrigo, Int. J. Numer. Methods
+   Eng. 75 (2008) 1282). It moves water between nodes, so that none is lost, and vanishes with the
+   change of the pressure in a step. With inertia M is that of a soil that does not get far in the
+   step, M + rho h^2/dt^2.
 
-   Points keep the part of their pressures that nodes do not see as long as water needs to cross a cell, as in explicit steps, but
-   with the storage of soil and water together. They keep the same share of it everywhere, so that its sum stays zero.
+   Points keep the part of their pressures that nodes do not see as long as water needs to cross a
+   cell, as in explicit steps, but with the storage of soil and water together, and the same share
+   everywhere, so that its sum stays zero.
 ------------------------------------------------------------------------- */
 
 #include "pore/mpm_pore.h"
@@ -33,11 +37,11 @@
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_passes.h"
 #include "field/mpm_point_batches.h"
 #include "field/mpm_stencil.h"
 #include "force.h"
 #include "material/material.h"
-#include "math/matrix.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +52,6 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double SMOOTHING = 0.25;    // b M/(alpha h)^2
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPore::begin_solve(double dt, bool inertial)
 {
@@ -66,25 +68,22 @@ void MPMPore::begin_solve(double dt, bool inertial)
   s.gradient.assign(3 * nmax, 0.0);
   int list[BATCH];
   double c[BATCH], slowest = std::numeric_limits<double>::max(), all;
-  for (const auto &run : field.map->runs) {
+  each_point_batch(field, [&](const auto &run, int first, int n) {
     const Soil *const soil_here = soil(run.material);
-    for (int first = run.first; soil_here && first < run.last; first += BATCH) {
-      const int n = std::min(BATCH, run.last - first);
-      std::iota(list, list + n, first);
-      load_state(field, *field.batch, list, n, run.material);
-      run.material->material->wave_speed(*field.batch, c);
-      for (int p = 0; p < n; p++) {
-        const int i = first + p;
-        const double J = field.points->jacobian(i), V = J * atom->vfrac[i],
-                     density = unit * run.material->density(i) / J, alpha = soil_here->of.biot;
-        const double M = density * c[p] * c[p],
-                     slow = inertial ? M + density * h * h / (dt * dt) : M;
-        s.biot[i] = alpha;
-        s.smoothing[i] = SMOOTHING * alpha * alpha * h * h * V / slow;
-        slowest = std::min(slowest, conductance[i] / (capacity[i] + alpha * alpha * V / M));
-      }
+    if (!soil_here) return;
+    std::iota(list, list + n, first);
+    load_state(field, *field.batch, list, n, run.material);
+    run.material->material->wave_speed(*field.batch, c);
+    for (int p = 0; p < n; p++) {
+      const int i = first + p;
+      const double J = field.points->jacobian(i), V = J * atom->vfrac[i],
+                   density = unit * run.material->density(i) / J, alpha = soil_here->of.biot;
+      const double M = density * c[p] * c[p], slow = inertial ? M + density * h * h / (dt * dt) : M;
+      s.biot[i] = alpha;
+      s.smoothing[i] = SMOOTHING * alpha * alpha * h * h * V / slow;
+      slowest = std::min(slowest, conductance[i] / (capacity[i] + alpha * alpha * V / M));
     }
-  }
+  });
   MPI_Allreduce(&slowest, &all, 1, MPI_DOUBLE, MPI_MIN, world);
   s.keep = exp(-dt * all / (h * h));
   nodes.gradients_to_points([&](const MPMPointMap::Run &, int first, int n, MPMNodeScalar::Rows q) {
@@ -124,9 +123,9 @@ double MPMPore::response() const
 {
   const double h = field.lattice.h;
   double sum = 0.0;
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last && soil(run.material); i++)
-      sum += capacity[i] + solve->dt * conductance[i] / (h * h);
+  each_point(field, [&](const auto &run, int i) {
+    if (soil(run.material)) sum += capacity[i] + solve->dt * conductance[i] / (h * h);
+  });
   return sum;
 }
 
@@ -169,13 +168,12 @@ void MPMPore::find_softness(const std::vector<double> &moduli, std::vector<doubl
   const Solve &s = *solve;
   const double h = field.lattice.h;
   softness.assign(atom->nmax, 0.0);
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) {
-      const double alpha = s.biot[i], V = field.points->jacobian(i) * atom->vfrac[i];
-      if (!(s.smoothing[i] > 0.0)) continue;
-      const double elastic = SMOOTHING * alpha * alpha * h * h * V / s.smoothing[i];
-      softness[i] = V / std::max(moduli[i], LEAST * elastic);
-    }
+  each_point(field, [&](const auto &, int i) {
+    const double alpha = s.biot[i], V = field.points->jacobian(i) * atom->vfrac[i];
+    if (!(s.smoothing[i] > 0.0)) return;
+    const double elastic = SMOOTHING * alpha * alpha * h * h * V / s.smoothing[i];
+    softness[i] = V / std::max(moduli[i], LEAST * elastic);
+  });
 }
 
 void MPMPore::each_term(const std::vector<double> &softness, const Term &use)
@@ -185,35 +183,32 @@ void MPMPore::each_term(const std::vector<double> &softness, const Term &use)
   const double dt = solve->dt;
   std::vector<int64_t> list;
   std::vector<double> gradients, weights;
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last && soil(run.material); i++) {
-      list.clear();
-      gradients.clear();
-      weights.clear();
-      stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-        list.push_back(node.number);
-        gradients.insert(gradients.end(), node.gradient, node.gradient + dim);
-        weights.push_back(node.weight);
-      });
-      double stiffness[9];
-      for (int column = 0; column < dim; column++) {
-        double q[3] = {0.0, 0.0, 0.0};
-        q[column] = dt;
-        conduct(i, q);
-        for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[d];
-      }
-      use((int) list.size(), list.data(), dim, gradients.data(), stiffness);
-      const double of_soil = solve->biot[i] * solve->biot[i] * softness[i];
-      use((int) list.size(), list.data(), 1, weights.data(), &of_soil);
+  each_point(field, [&](const auto &run, int i) {
+    if (!soil(run.material)) return;
+    list.clear();
+    gradients.clear();
+    weights.clear();
+    stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
+      list.push_back(node.number);
+      gradients.insert(gradients.end(), node.gradient, node.gradient + dim);
+      weights.push_back(node.weight);
+    });
+    double stiffness[9];
+    for (int column = 0; column < dim; column++) {
+      double q[3] = {0.0, 0.0, 0.0};
+      q[column] = dt;
+      conduct(i, q);
+      for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[d];
     }
+    use((int) list.size(), list.data(), dim, gradients.data(), stiffness);
+    const double of_soil = solve->biot[i] * solve->biot[i] * softness[i];
+    use((int) list.size(), list.data(), 1, weights.data(), &of_soil);
+  });
   if (surface.any()) surface.each_term(dt, use);
 }
 
-/* ----------------------------------------------------------------------
-   The residual of the equations, within the tolerance of the solution, goes to the mass of points as well, so that points get
-   exactly the water that comes through the surface, to round-off
-------------------------------------------------------------------------- */
-
+/** The residual of the equations, within the tolerance of the solution, goes to the mass of points
+ *  as well, so that points get exactly the water that comes through the surface, to round-off. */
 void MPMPore::take_solution(std::vector<double> &inflow)
 {
   const std::vector<double> now = nodes.value;

@@ -15,12 +15,9 @@
      rho_f/n dw/dt       = - grad p + rho_f (g - a) - R w
      S dp/dt             = - alpha div v - div w
 
-   Unknowns are the velocity of the soil on nodes, as without water, the pressure on nodes
-   (mpm_pore.cpp), and w in points. With w in points, walls need no boundary condition for it, and
-   may be anywhere in a cell: no water goes through where the weak form of div w ends. Points do not
-   lose w to the lattice in transfers, and where drag dominates, the equations on nodes become those
-   of u-p. The alternative, a separate velocity of the water on nodes, needs a second set of walls,
-   and damps the part of w that transfers do not see.
+   Unknowns are the velocity of the soil on nodes, the pressure on nodes (mpm_pore.cpp), and w in
+   points: walls need no boundary condition for it, points do not lose w to the lattice in
+   transfers, and where drag dominates, the equations on nodes become those of u-p.
 
    Drag. In a step with the duration t everything except w is constant, and w is integrated exactly:
    with the rate of drag r = n R/rho_f and the mean f = (1 - exp(-r t))/(r t) of its decay,
@@ -37,33 +34,29 @@
      (m_i - mu_i) a_i = F_i - sum_p mu_p N_ip A_p,    a_p = sum_i N_ip a_i,
 
    so that both unknowns are solved at once, node by node. Walls and contact act on the mass m_i -
-   mu_i of the node. Momentum is kept to round-off, as mu_i is the sum of mu_p N_ip. The inverse of
-   the mass matrix, (1/s, -N^T/s; -N/s, n/(rho_f V) + N N^T/s) with s = m_i - mu_i, is symmetric and
-   positive, as soil is heavier than its water: waves have an energy which this integration keeps
-   bounded.
+   mu_i of the node. Momentum is kept to round-off. The inverse of the mass matrix, (1/s, -N^T/s;
+   -N/s, n/(rho_f V) + N N^T/s) with s = m_i - mu_i, is symmetric and positive, as soil is heavier
+   than its water: waves have an energy which this integration keeps bounded.
 
    Surface. Where the pressure p_s outside is given, the flow out of an area A with the normal m is
    that of the points next to it, Q = A m . <w>. With the same weights c_p of this mean, the
    remaining pressure difference drives these points by A m c_p (p - p_s)/V_p in addition to - grad
-   p. In this way, the weak form of the second equation includes a given pressure. What this term
-   takes from the flow goes to the pressure, so it is part of the same symmetric system as
-   everything else. One pressure makes no flow: one that rises to the surface with just the gradient
-   that balances its own push, for which nodes beyond the surface leave room. So the flow that p -
-   p_s would make from rest in a step is added. A linear pressure is a solution, and the resistance
-   bounds every flow: a surface that is loaded faster than water can leave does not make pressures
-   oscillate.
+   p. One pressure makes no flow: one that rises to the surface with just the gradient that balances
+   its own push, for which nodes beyond the surface leave room. So the flow that p - p_s would make
+   from rest in a step is added. A linear pressure is a solution, and the resistance bounds every
+   flow.
 
    A resistance that depends on w (Forchheimer) is taken at the flow w* that an implicit step would
-   leave,
-   |w*| (1 + t n/rho_f (R_0 + R_1 |w*|)) = |w + t n/rho_f (rho_f g - grad p)|: steady flow is exact.
+   leave, |w*| (1 + t n/rho_f (R_0 + R_1 |w*|)) = |w + t n/rho_f (rho_f g - grad p)|: steady flow is
+   exact.
 ------------------------------------------------------------------------- */
 
 #include "pore/mpm_pore_motion.h"
 
 #include "atom.h"
 #include "base/mpm_points.h"
+#include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
-#include "field/mpm_passes.h"
 #include "force.h"
 #include "math/matrix.h"
 
@@ -75,17 +68,9 @@ using namespace MPM_NS;
 
 static constexpr int WIDTH = 8;    // reals of a node in sums over points
 
-/* ---------------------------------------------------------------------- */
-
 MPMPoreMotion::MPMPoreMotion(LAMMPS *lmp, MPMField &field, double density, const double *gravity) :
     Pointers(lmp), field(field), density(density), gravity(gravity)
 {
-}
-
-/** Mean of exp(-t) for t from 0 to x. */
-static double mean_of_fading(double x)
-{
-  return x > 1.0e-8 ? -expm1(-x) / x : 1.0 - 0.5 * x;
 }
 
 /** Acceleration of free water per gradient of pressure. */
@@ -99,8 +84,6 @@ double MPMPoreMotion::fading(const Pores &pores, double resistance) const
 {
   return pores.porosity * resistance * acceleration() * field.step_dt();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPoreMotion::begin_step(const MPMRows &of_points)
 {
@@ -131,26 +114,26 @@ void MPMPoreMotion::to_points(std::vector<double> &of_nodes, const Wanted &wante
   weights.resize(std::max(weights.size(), (std::size_t) atom->nmax));
   const PointRows rows = field.rows_at_rest(values.data(), weights.data());
   const TransferStep step = field.step_data(0.0);
-  for (const auto &a : field.map->active) {
-    if (wanted && !wanted(a.slot)) continue;
-    int base[3];
-    field.map->tile_base(a, base);
-    field.pic.load(field.map->tile_load, of_nodes.data(), field.grid.blocks[a.slot].slot, a.box);
-    for (int k = a.first_run; k < a.last_run; k++) {
-      const auto &run = field.map->runs[k];
-      field.pic.g2p(rows, step, run.first, run.last, base, field.map->tile_load, nullptr);
-    }
-  }
+  points_from(
+      of_nodes.data(), field, field.pic,
+      [&](int slot) {
+        return !wanted || wanted(slot);
+      },
+      [&](const MPMPointMap::Run &run, const int *base) {
+        field.pic.g2p(rows, step, run.first, run.last, base, field.map->tile_load, nullptr);
+      });
 }
 
 void MPMPoreMotion::add_gradients(std::vector<double> &of_nodes, const Wanted &wanted)
 {
   to_points(of_nodes, wanted);
-  for (const auto &run : field.map->runs) {
-    if (!wanted(run.slot)) continue;
-    for (std::size_t k = 3 * (std::size_t) run.first; k < 3 * (std::size_t) run.last; k++)
+  each_point(field, [&](const auto &run, int i) {
+    if (!wanted(run.slot)) return;
+    for (int d = 0; d < 3; d++) {
+      const std::size_t k = 3 * (std::size_t) i + d;
       lead[k] += field.work.vectors[k];
-  }
+    }
+  });
 }
 
 void MPMPoreMotion::begin_point(int i, const Pores &pores, const MPMPoreResistance *r,
@@ -180,7 +163,7 @@ void MPMPoreMotion::begin_point(int i, const Pores &pores, const MPMPoreResistan
     resistance += pores.quadratic * 2.0 * pushed / (a + sqrt(a * a + 4.0 * b * pushed));
   }
   const double x = fading(pores, resistance);
-  share[i] = mean_of_fading(x) * pores.porosity * density * pores.volume;
+  share[i] = mean_decay(x) * pores.porosity * density * pores.volume;
   for (int d = 0; d < dim; d++) mine[d] = free[d] - unit * resistance * w[d];
 }
 
@@ -205,7 +188,7 @@ void MPMPoreMotion::begin_at_interface(int i, const Pores &pores, const MPMPoreR
   push[1] = sqrt(std::max(0.0, dot(pushed, pushed) - across * across)) / (gain * unit);
   const double flows = r.flow(push, 1.0 / (gain * unit));
   double mean[2];
-  for (int k = 0; k < 2; k++) mean[k] = mean_of_fading(fading(pores, r.at(k, flows)));
+  for (int k = 0; k < 2; k++) mean[k] = mean_decay(fading(pores, r.at(k, flows)));
   const double least = std::min(mean[0], mean[1]);
   share[i] = least * pores.porosity * density * pores.volume;
   for (int d = 0; d < 3; d++) {
@@ -215,10 +198,8 @@ void MPMPoreMotion::begin_at_interface(int i, const Pores &pores, const MPMPoreR
   }
 }
 
-/* ----------------------------------------------------------------------
-   sums over points to [node][8]: weight times vector, 0, and weight, from weigh(i, weight, vector)
-------------------------------------------------------------------------- */
-
+/** Sums over points to [node][8]: weight times vector, 0, and weight, from weigh(i, weight,
+ *  vector) */
 template <class Weigh>
 void MPMPoreMotion::sum(std::vector<double> &to, const Wanted &wanted, const Weigh &weigh)
 {
@@ -255,11 +236,8 @@ void MPMPoreMotion::separate()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Includes the ledger, which has seen nodes without the mass that moves by itself: for the soil,
-   the inertia of the water is a force, whose work is like that of the pressure
-------------------------------------------------------------------------- */
-
+/** Includes the ledger, which has seen nodes without the mass that moves by itself: for the soil,
+ *  the inertia of the water is a force, whose work is like that of the pressure. */
 void MPMPoreMotion::move()
 {
   const int dim = field.lattice.dim;
@@ -284,14 +262,13 @@ void MPMPoreMotion::move()
 
   to_points(change, nullptr);
   const auto &values = field.work.vectors;
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) {
-      const double gain = share[i] * dt / (density * atom->vfrac[i]);
-      for (int d = 0; d < dim; d++) {
-        const std::size_t k = 3 * (std::size_t) i + d;
-        flow[i][d] += gain * (lead[k] - values[k]);
-      }
+  each_point(field, [&](const auto &, int i) {
+    const double gain = share[i] * dt / (density * atom->vfrac[i]);
+    for (int d = 0; d < dim; d++) {
+      const std::size_t k = 3 * (std::size_t) i + d;
+      flow[i][d] += gain * (lead[k] - values[k]);
     }
+  });
 }
 
 void MPMPoreMotion::discharge(int i, double *q) const
@@ -309,11 +286,8 @@ void MPMPoreMotion::flow_at_nodes(const Wanted &wanted, std::vector<double> &of_
   field.nodes.complete(of_nodes.data(), WIDTH, 4);
 }
 
-/* ----------------------------------------------------------------------
-   c^2 of A x = c^2 B x with the stiffness A = (E + alpha^2/S, alpha/S; alpha/S, 1/S) and the
-   inertia B = (rho, rho_f; rho_f, rho_f/n)
-------------------------------------------------------------------------- */
-
+/** From c^2 of A x = c^2 B x with the stiffness A = (E + alpha^2/S, alpha/S; alpha/S, 1/S) and the
+ *  inertia B = (rho, rho_f; rho_f, rho_f/n) */
 double MPMPoreMotion::wave_speed(double c, double of_both, double biot, double storage,
                                  double porosity) const
 {

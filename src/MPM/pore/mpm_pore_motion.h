@@ -81,10 +81,10 @@ class MPMPoreMotion : protected Pointers {
 
   // of points in this step
 
-  std::vector<double>
-      share;    // [n] mass that moves relative to the soil: 0 where drag takes all that it gains
-  std::vector<double>
-      lead;    // [n][3] acceleration of this mass; the gradient of the pressure until begin_point()
+  // [n] mass that moves relative to the soil: 0 where drag takes all that it gains
+  std::vector<double> share;
+  // [n][3] acceleration of this mass; the gradient of the pressure until begin_point()
+  std::vector<double> lead;
   std::vector<double> nodes;     // [node][8] sums of share times lead, 0, and sum of share
   std::vector<double> change;    // [node][8] acceleration of the soil
 

@@ -10,6 +10,7 @@
 #define LMP_MPM_PORE_OPTIONS_H
 
 #include "declare/option.h"
+#include "pointers.h"
 #include "pore/mpm_pore_soil.h"
 #include "pore/mpm_pore_surface.h"
 
@@ -18,6 +19,8 @@
 #include <vector>
 
 namespace LAMMPS_NS {
+class Fix;
+class MPMField;
 
 /** Keywords of fix mpm/pore. */
 struct MPMPoreOptions {
@@ -63,6 +66,37 @@ struct MPMPoreOptions {
   double forchheimer_value = 0.0;
   MPMRetention retention;
   std::string without_soil, without_retention;    // keywords that were given too early
+};
+
+/** Checks of soils with pore water at the start of a run. Each stops with an error, or warns. */
+class MPMPoreChecks : protected Pointers {
+ public:
+  /** id: of the fix, for messages. */
+  MPMPoreChecks(class LAMMPS *lmp, const MPMPoreOptions &options, const std::string &id) :
+      Pointers(lmp), options(options), id(id)
+  {
+  }
+
+  /** Checks materials and variables of soils. */
+  void check_soils() const;
+  /** Checks soils with grains that are not rigid, once. */
+  void check_grains();
+  /** Warns of soils without points, as with the ID of another material, where the ground stays dry,
+   *  and of soils that are lighter than their water, whose grains have a negative weight; without
+   *  gravity, this is a way to allow longer steps. here: which soils have points on this rank.
+   *  Collective. */
+  void warn_of_soils(const std::vector<int> &here, bool has_weight) const;
+  /** Checks options that implicit steps cannot have: their equations are linear in the pressure of
+   *  nodes. */
+  void check_implicit() const;
+  /** Checks that the mass that moves by itself is less than all mass, and that nodes have
+   *  accelerations. */
+  void check_motion(const Fix &, MPMField &) const;
+
+ private:
+  const MPMPoreOptions &options;
+  const std::string id;
+  bool grains_known = false;    // was check_grains() done?
 };
 
 }    // namespace LAMMPS_NS

@@ -10,13 +10,87 @@
 #define LMP_MPM_PORE_SOIL_H
 
 #include "grains/mpm_drag.h"
-#include "pore/mpm_retention.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 namespace LAMMPS_NS {
+
+/** How much water the pores of a soil keep, and let flow, when its pressure p is below that of the
+ *  air. With the effective saturation S_e = (S - S_r)/(S_s - S_r), which is one for p >= 0,
+ *
+ *    S_e = (1 + (-alpha p)^n)^-m, m = 1 - 1/n
+ *          (M.T. van Genuchten, Soil Sci. Soc. Am. J. 44 (1980) 892)
+ *    S_e = exp(alpha p)   (W.R. Gardner, Soil Sci. 85 (1958) 228)
+ *
+ *  and the permeability is that of full pores times
+ *
+ *    k_r = S_e^1/2 (1 - (1 - S_e^(1/m))^m)^2
+ *          (Y. Mualem, Water Resour. Res. 12 (1976) 513; van Genuchten)
+ *    k_r = S_e^e */
+struct MPMRetention {
+  enum Law { FULL, VAN_GENUCHTEN, GARDNER };
+  enum Flow { OF_LAW, MUALEM, POWER };
+
+  Law law = FULL;                   ///< FULL: pores keep all water
+  double alpha = 0.0;               ///< [1/pressure]
+  double n = 0.0;                   ///< of van Genuchten
+  double least = 0.0;               ///< residual saturation S_r
+  double most = 1.0;                ///< saturation S_s for p >= 0
+  Flow flow = OF_LAW;               ///< OF_LAW: Mualem for van Genuchten, the power 1 for Gardner
+  double power = 1.0;               ///< e
+  bool bishop_effective = false;    ///< Bishop's coefficient is S_e, not S
+
+  /** Can pores lose water, so that they are not always full? */
+  bool can_dry() const { return law != FULL; }
+
+  /** State at a pressure p below that of the air. */
+  struct State {
+    double effective, saturation;
+    double slope;       ///< dS/dp [1/pressure]
+    double relative;    ///< k_r
+    double bishop;      ///< chi, share of the pressure in the effective stress (Bishop)
+  };
+  State at(double p) const
+  {
+    State state = {};
+    if (!can_dry() || !(p < 0.0)) {
+      state.effective = state.relative = 1.0;
+      state.saturation = most;
+      state.slope = 0.0;
+    } else if (law == VAN_GENUCHTEN) {
+      const double m = 1.0 - 1.0 / n, x = std::pow(-alpha * p, n);
+      state.effective = std::exp(-m * std::log1p(x));
+      state.slope = state.effective * (n - 1.0) * x / ((1.0 + x) * -p);
+      if (flow != POWER) {
+        const double open = x > 0.0 ? -std::expm1(-m * std::log1p(1.0 / x)) : 1.0;
+        state.relative = std::sqrt(state.effective) * open * open;
+      }
+    } else {
+      state.effective = std::exp(alpha * p);
+      state.slope = alpha * state.effective;
+      if (flow != POWER) state.relative = state.effective;
+    }
+    if (can_dry() && p < 0.0) {
+      if (flow == POWER) state.relative = std::pow(state.effective, power);
+      state.saturation = least + (most - least) * state.effective;
+      state.slope *= most - least;
+    }
+    state.bishop = bishop_effective ? state.effective : state.saturation;
+    return state;
+  }
+  /** Derivative of the pressure in the effective stress with respect to the pressure of the water,
+   *  d(chi p)/dp. With full pores it is chi, which is S_s if Bishop's coefficient is the
+   *  saturation. */
+  double borne(double p) const
+  {
+    if (!can_dry()) return 1.0;
+    const State now = at(p);
+    if (p >= 0.0) return now.bishop;
+    return now.bishop + p * now.slope / (bishop_effective ? most - least : 1.0);
+  }
+};
 
 /** Pore water: its bulk modulus [pressure], its density, and the divisor that makes permeabilities
  *  mobilities. The divisor is the unit weight [pressure/length] for hydraulic conductivities, or

@@ -18,34 +18,27 @@
    Flow brings water to a point: its volume W is a state of the point, and each increase of W also
    goes to the mass of the point. The pressure follows from w = W/(volume of pores), the mixed form
    (M.A. Celia, E.T. Bouloutas, R.L. Zarba, Water Resour. Res. 26 (1990) 1483). A step is linear in
-   p, with the capacity at its start. Where the capacity changes by orders of magnitude, at fronts
-   and the water table, this makes no error in the mass of water, but one in the time at which it
-   comes. The volume of pores is that after the motion of the step, so that a closed body of any
-   motion keeps both W and the relation of p and W. Only where pores are full before and after the
-   step, p is taken from the step, as in soil that is always full, because 1e-16 of W are 1e-7 Pa of
+   p, with the capacity at its start. The volume of pores is that after the motion of the step, so
+   that a closed body of any motion keeps both W and the relation of p and W. Only where pores are
+   full before and after the step, p is taken from the step, because 1e-16 of W are 1e-7 Pa of
    water.
 
    Lag. The part of the pressures of points that nodes do not see, p_p - sum_i N_ip p_i, decays at
    the rate k/(G C h^2) in which flow crosses a cell and, in full pores, in some crossings of waves
-   (mpm_pore.cpp). In dry soil flow takes 1e5 times as long, and at the rate of full pores points
-   would have the pressure of nodes after each step, which would be a numerical diffusion: the share
-   of waves falls as the storage grows. With factors e_p of a step that differ from point to point
-   the sum of C_p e_p (p_p - ...) is not zero, and water would be lost. Hence nodes get the rate C_p
-   (e - e_p) (p_p - ...)/dt, with the greatest factor e: with the weights N_ip, whose sum is one,
-   the total of all points and nodes is kept, and in full pores nothing changes.
+   (mpm_pore.cpp); the share of waves falls as the storage grows. With factors e_p of a step that
+   differ from point to point the sum of C_p e_p (p_p - ...) is not zero, and water would be lost.
+   Hence nodes get the rate C_p (e - e_p) (p_p - ...)/dt, with the greatest factor e: the total of
+   all points and nodes is kept, and in full pores nothing changes.
 
    Full pores next to very dry soil. The conductance is that at the start of a step, while the
    capacity of full pores is almost zero: in one step more water would leave them than they have.
-   Hence the flow through a cell in a step is limited to a fifth of the water of a point. Where
-   pores are full on both sides, flow is never so fast, except in steps much too long for the scene.
+   Hence the flow through a cell in a step is limited to a fifth of the water of a point.
 
-   Slopes. Nodes get p_p + g_p (x_i - x_p) with the gradient g_p of the step before (mpm_pore.cpp).
-   At a front that falls by many 1/alpha within a cell, this made pressures far above those of any
-   point at nodes next to it: the front held its own water back, to a third of the inflow into a dry
-   soil at a surface that stays wet, and more so on finer lattices and with stiffer water. Hence the
-   part of g_p that differs from water at rest changes the pressure of points with suction through a
-   cell by 1/alpha + s at most, with the suction s, in which S and k_r change by a factor. As sum_i
-   N_ip (x_i - x_p) = 0, any g_p leaves the water of all points unchanged.
+   Slopes. Nodes get p_p + g_p (x_i - x_p) with the gradient g_p of the step before. At a front that
+   falls by many 1/alpha within a cell, this would make pressures far above those of any point at
+   nodes next to it, and hold its own water back. Hence the part of g_p that differs from water at
+   rest changes the pressure of points with suction through a cell by 1/alpha + s at most, with the
+   suction s, in which S and k_r change by a factor.
 
    Surface. Through half a cell next to the surface, water comes in with the mean of the
    permeabilities at the pressure outside and inside: rain on dry soil would otherwise not get in.
@@ -75,8 +68,6 @@ static constexpr double MOST_LAG =
     0.1;    // largest share of the water of a point that leaves by its lag in a step
 static constexpr double UNDERSHOOT =
     0.05;    // largest lack of water of a point, relative to its pores
-
-/* ---------------------------------------------------------------------- */
 
 MPMPoreMoisture MPMPoreMoisture::at(const MPMPoreSoil &soil, double J, double p,
                                     const MPMPoreWater &water)
@@ -142,8 +133,6 @@ double MPMPoreMoisture::energy(const MPMPoreSoil &soil, double J, double p,
   return sum;
 }
 
-/* ---------------------------------------------------------------------- */
-
 MPMPoreSuction::MPMPoreSuction(LAMMPS *lmp, MPMField &field, const MPMPoreWater &water,
                                double *const &content) :
     Pointers(lmp),
@@ -197,8 +186,6 @@ void MPMPoreSuction::begin_point(int i, const MPMPoreSoil &soil, double J, doubl
   slowest = std::min(slowest, point.keep);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPoreSuction::find_conductances(MPMNodeScalar &scalar, const MPMPoreSurface &surface,
                                        const Soils &soil)
 {
@@ -224,8 +211,6 @@ void MPMPoreSuction::find_conductances(MPMNodeScalar &scalar, const MPMPoreSurfa
     field.nodes.complete(nodes.data(), 1, 1);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPoreSuction::limit_slope(const MPMPoreSoil &soil, double p, const double *at_rest,
                                  const Lattice &lattice, double *g)

@@ -7,30 +7,27 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   The sum g_i = sum_p V_p grad N_ip of a node is the integral of its function over the surface of the soil,
-   times the normal: zero inside, and at the surface the area that belongs to the node. The volume at the node
-   over this area gives the depth of the node below the surface (MPMNodeProfile). Of the nodes on a line
-   through the surface, those within a node spacing represent it, with shares 1 - |depth|. Their sum is
-   one, and on an inclined surface it is one in the mean; where a node lacks area, at the sides of a body, its
-   share is smaller by as much.
+   The sum g_i = sum_p V_p grad N_ip of a node is the integral of its function over the surface of
+   the soil, times the normal: zero inside, and at the surface the area that belongs to the node.
+   The volume at the node over this area gives the depth of the node below the surface
+   (MPMNodeProfile). Of the nodes on a line through the surface, those within a node spacing
+   represent it, with shares 1 - |depth|, whose sum is one; where a node lacks area, at the sides of
+   a body, its share is smaller by as much.
 
    The place of a node is s = half a node spacing below the surface, where
 
      q = k (p(s) - p_s - rho_f g . (x(s) - x_s))/s
 
-   is the flow from the pressure p_s at the surface, where it leaves the nodes: with it, a pressure that is
-   linear up to the surface is a solution on nodes, too. If the water were taken where the pressure is, a column
-   of 10 cells between two drained faces would let through 3.8 % too much.
-   To hold p = p_s at the surface itself, as heat does, lets the water of a whole cell out at once: where
-   water has not yet had the time to flow through a cell, pressures then oscillate from the surface into the
-   soil, and more so the less permeable it is (a column of 20 cells, K_f = 2.2e9, M = 1.35e7, loaded in 10 ms, k
-   = 1e-8: by 30 % of the load three cells below the surface; with this method 0.8 %, which are waves). Here,
-   the permeability bounds the flow.
+   is the flow from the pressure p_s at the surface, where it leaves the nodes: with it, a pressure
+   that is linear up to the surface is a solution on nodes, too. To hold p = p_s at the surface
+   itself, as heat does, would let the water of a whole cell out at once, and pressures would
+   oscillate into soil through which water had no time to flow. Here, the permeability bounds the
+   flow.
 
-   With a k that changes with the depth, 1/k is its mean from the surface to s. Nodes have means of k over some node
-   spacings, and the mean at the place of the node would be that of soil deeper than s: where soil consolidates and k
-   falls by ten within a cell of the drained surface, 20 cells would settle 2 % too much, and 10 cells 10 %. So a line through
-   the means of the nodes, at the depths of the soil that they see, gives k at both ends of s, and between these it is linear.
+   With a k that changes with the depth, 1/k is its mean from the surface to s. Nodes have means of
+   k over some node spacings, those of soil deeper than s. So a line through the means of the nodes,
+   at the depths of the soil that they see, gives k at both ends of s, and between these it is
+   linear.
 
    Each place belongs to the rank that owns its node; sums over ranks follow.
 ------------------------------------------------------------------------- */
@@ -56,23 +53,23 @@ using namespace MPM_NS;
 enum { VOLUME = 3, GRADIENT = 4 };    // reals of a record
 
 static constexpr double INSET = 0.5;    // depth of places below the surface, in node spacings
-// gaps between material and a face of the box, in node spacings, up to which they touch, and from which on they are apart
+// gaps between material and a face of the box, in node spacings, up to which they touch, and from
+// which on they are apart
 static constexpr double TOUCHES = 0.25, IS_APART = 0.5;
-// gaps that may be noise of sums over points, and gaps from which on the soil ends there and not at the face
+// gaps that may be noise of sums over points, and gaps from which on the soil ends there and not at
+// the face
 static constexpr double AT_FACE = 0.05, OFF_FACE = 0.1;
-// limits of permeabilities on the line through those of nodes, relative to the least and the greatest of these: means of
-// a permeability that changes within a cell hide its extremes
+// limits of permeabilities on the line through those of nodes, relative to the least and the
+// greatest of these: means of a permeability that changes within a cell hide its extremes
 static constexpr double LOW = 0.25, HIGH = 2.0;
 static constexpr double LEAK = 0.5;     // share of the flow of a step from rest, with inertia
 static constexpr double FULL = 0.97;    // share of a cell; sums over points are not exact integrals
 static constexpr double ENOUGH = 0.01;    // share of a cell at a node, for its whole weight
-static constexpr double ONE_SIDED =
-    0.8;    // share of the area at a node that its normals keep, unless surfaces face each other there
+// share of the area at a node that its normals keep, unless surfaces face each other there
+static constexpr double ONE_SIDED = 0.8;
 static constexpr double MOSTLY = 0.5;    // share of a place that has water, for its whole area
-static constexpr double NOISE =
-    0.1;    // share of the area of a cell below which there is no surface, but an error of sums
-
-/* ---------------------------------------------------------------------- */
+// share of the area of a cell below which there is no surface, but an error of sums
+static constexpr double NOISE = 0.1;
 
 MPMPoreSurface::MPMPoreSurface(LAMMPS *lmp, MPMField &field, const Conditions &conditions,
                                const MPMPoreWater &water, const double *gravity) :
@@ -97,32 +94,21 @@ void MPMPoreSurface::init(bool soil_dries, bool permeability_varies)
 
 void MPMPoreSurface::extend_topology()
 {
-  if (!any()) return;
-  Grid &grid = field.grid;
-  const int dim = field.lattice.dim;
-  const std::size_t n = grid.blocks.size();
-  for (std::size_t ib = 0; ib < n; ib++)
-    for (int k = 0; k < (dim == 3 ? 27 : 9); k++) {
-      const int shift[3] = {k % 3 - 1, k / 3 % 3 - 1, dim == 3 ? k / 9 - 1 : 0};
-      int b[3];
-      for (int d = 0; d < 3; d++) b[d] = grid.blocks[ib].b[d] + shift[d];
-      grid.activate(b);
-    }
+  if (any()) activate_blocks_around(field);
 }
 
-/** Finds blocks that are not full of material, and those next to them. The part of a block on one rank is not enough to decide:
- *  if one of the ranks that share it finds it near, all must add their points. */
+/** Finds blocks that are not full of material, and those next to them. The part of a block on one
+ *  rank is not enough to decide: if one of the ranks that share it finds it near, all must add
+ *  their points. */
 void MPMPoreSurface::find_blocks_near()
 {
   const auto &blocks = field.grid.blocks;
   std::vector<double> filled(blocks.size(), 0.0);
-  double room[BATCH];
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i += BATCH) {
-      const int n = std::min(BATCH, run.last - i);
-      const double *const J = field.jacobians.get(field, i, n, room);
-      for (int p = 0; p < n; p++) filled[run.slot] += field.atom->vfrac[i + p] * J[p];
-    }
+  double buffer[BATCH];
+  each_point_batch(field, [&](const auto &run, int first, int n) {
+    const double *const J = field.jacobians.get(field, first, n, buffer);
+    for (int p = 0; p < n; p++) filled[run.slot] += field.atom->vfrac[first + p] * J[p];
+  });
   const double full = NODES_PER_BLOCK * field.lattice.cell_volume();
   near.assign(blocks.size(), 0);
   for (std::size_t ib = 0; ib < blocks.size(); ib++)
@@ -152,8 +138,8 @@ bool MPMPoreSurface::is_near(int slot) const
   });
 }
 
-/** Maps volumes of nodes, and minus the force of the stress -I, with the gradients of the functions: the replacements of
- *  moving least squares would see a surface elsewhere. */
+/** Maps volumes of nodes, and minus the force of the stress -I, with the gradients of the
+ *  functions: the replacements of moving least squares would see a surface elsewhere. */
 void MPMPoreSurface::map_volume()
 {
   const auto &pic = field.pic;
@@ -164,7 +150,8 @@ void MPMPoreSurface::map_volume()
   work.stress.resize(6 * nmax);
   PointRows rows = field.rows_at_rest(work.vectors.data(), work.weights.data());
   rows.tau = work.stress.data();
-  // read, and multiplied by zero: the means that steps of every K store here do not exist before the first such step
+  // read, and multiplied by zero: the means that steps of every K store here do not exist before
+  // the first such step
   rows.f = &field.atom->f[0][0];
   TransferStep step = field.step_data(1.0);
   step.force_scale = 0.0;
@@ -225,11 +212,10 @@ void MPMPoreSurface::add_place(MPMStencil &stencil, int part, double area, doubl
     x[d] = at[d] + step;
     place.outside += water.density * force->nktv2p * gravity[d] * step;
   }
-  place.first = (int) node.size();
-  place.n = add_nodes(stencil, x);
-  place.first_at = (int) node.size();
-  place.n_at = add_nodes(stencil, at);
-  if (place.n && place.n_at) places.push_back(place);
+  place.inside = add_nodes(stencil, x);
+  place.top = add_nodes(stencil, at);
+  if (place.inside.last > place.inside.first && place.top.last > place.top.first)
+    places.push_back(place);
 }
 
 /** Open share of the free surface at a place next to bodies that close it. */
@@ -240,7 +226,6 @@ double MPMPoreSurface::open_part(const double *x) const
   return std::clamp((gap - TOUCHES) / (IS_APART - TOUCHES), 0.0, 1.0);
 }
 
-/** Sets p to the pressure outside, times a factor, unless the surface is closed, has a flux, or bodies can close it. */
 void MPMPoreSurface::replace_by_outside(const double *x, double factor, double &p) const
 {
   const auto &c = conditions[FREE];
@@ -249,20 +234,37 @@ void MPMPoreSurface::replace_by_outside(const double *x, double factor, double &
   p = factor * pressure_outside(c, x);
 }
 
-/** Adds the nodes that a place reaches. Returns their number; 0: some of them do not exist. */
-int MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
+/** Adds the nodes that a position reaches; none, if some of them do not exist. */
+MPMPoreSurface::Range MPMPoreSurface::add_nodes(MPMStencil &stencil, const double *x)
 {
-  const std::size_t first = node.size();
+  const int first = (int) node.size();
   const bool there = stencil.visit_around(x, [&](int64_t number, double w, const double *) {
     node.push_back(number);
     weight.push_back(w);
   });
-  return there ? (int) (node.size() - first) : 0;
+  return {first, there ? (int) node.size() : first};
 }
 
-/** End of the material on the line of nodes through this one and a face of the box. sum_i x_i g_i/sum_i g_i is the place of a
- *  surface, and sum_i g_i its share of the area of the line. Both are exact for evenly spaced points, while those of one node have
- *  errors of up to 5 %. A gap that may be noise is 0. */
+/** Value at a position of what nodes have. */
+double MPMPoreSurface::value(const Range &range, const std::vector<double> &of_nodes) const
+{
+  double sum = 0.0;
+  for (int k = range.first; k < range.last; k++) sum += weight[k] * of_nodes[node[k]];
+  return sum;
+}
+
+/** Spreads an amount at a position over its nodes: the transpose of value(). */
+void MPMPoreSurface::spread(const Range &range, double amount, std::vector<double> &of_nodes,
+                            int width, int component) const
+{
+  for (int k = range.first; k < range.last; k++)
+    of_nodes[width * node[k] + component] += weight[k] * amount;
+}
+
+/** End of the material on the line of nodes through this one and a face of the box. sum_i x_i
+ *  g_i/sum_i g_i is the place of a surface, and sum_i g_i its share of the area of the line. Both
+ *  are exact for evenly spaced points, while those of one node have errors of up to 5 %. A gap that
+ *  may be noise is 0. */
 MPMPoreSurface::End MPMPoreSurface::end_at_face(const int *index, int face, double wall) const
 {
   const auto &lattice = field.lattice;
@@ -286,8 +288,6 @@ MPMPoreSurface::End MPMPoreSurface::end_at_face(const int *index, int face, doub
   return {gap * std::clamp((fabs(gap) - AT_FACE) / (OFF_FACE - AT_FACE), 0.0, 1.0),
           std::min(1.0, area)};
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPoreSurface::find_places()
 {
@@ -337,8 +337,8 @@ void MPMPoreSurface::find_places()
         double at[3] = {x[0], x[1], x[2]}, normal[3] = {0.0, 0.0, 0.0};
         at[axis] = wall - sign * end.gap * h;
         normal[axis] = sign;
-        // a flux is proportional to its area, that of the line; with pressures the resistance of the soil decides, of which each
-        // node has its own part
+        // a flux is proportional to its area, that of the line; with pressures the resistance of
+        // the soil decides, of which each node has its own part
         const bool is_flux = conditions[face].kind == MPMPoreCondition::FLUX;
         const double part = is_flux ? end.share : std::min(1.0, out / function(below));
         add_place(stencil, face, touch * part * (1.0 - fabs(below)) * side, touch, at, normal);
@@ -370,15 +370,16 @@ bool MPMPoreSurface::by_area() const
   return kind == MPMPoreCondition::FLUX || kind == MPMPoreCondition::RAIN;
 }
 
-/** Area of the free surface at places with a given volume of water per area and time. It is the area of the nodes next to a place, which is
- *  the integral of their functions over the surface, relative to the area that the places give them so far. Where surfaces face
- *  each other, normals cancel at nodes between these, which then have less weight than others. */
+/** Area of the free surface at places with a given volume of water per area and time. It is the
+ *  area of the nodes next to a place, which is the integral of their functions over the surface,
+ *  relative to the area that the places give them so far. Where surfaces face each other, normals
+ *  cancel at nodes between these, which then have less weight than others. */
 void MPMPoreSurface::find_areas()
 {
   const int dim = field.lattice.dim, width = 1 + dim;
   std::vector<double> sums(width * field.grid.nnodes(), 0.0);    // of areas, and times normals
   const auto visit = [&](const Place &place, const auto &f) {
-    for (int k = place.first_at; k < place.first_at + place.n_at && place.part == FREE; k++)
+    for (int k = place.top.first; k < place.top.last && place.part == FREE; k++)
       f(node[k], weight[k]);
   };
   for (const auto &place : places)
@@ -408,23 +409,22 @@ void MPMPoreSurface::find_areas()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
-/** Scales the weights to the sum one; enough: capacity from which on a node has its whole weight. Returns the sum before.
+/** Scales the weights to the sum one; enough: capacity from which on a node has its whole weight.
+ *  Returns the sum before.
  *
- *  A point in the middle of a cell gives almost no capacity to a node that is out of reach of all others.
- *  Conduction bounds the stored C p^2 of a node, so p there may be as large as 1/sqrt(C): such nodes
- *  must not have their whole weight, neither for water nor for their pressure. */
-double MPMPoreSurface::normalize(int first, int n, double enough,
+ *  A point in the middle of a cell gives almost no capacity to a node that is out of reach of all
+ *  others. Conduction bounds the stored C p^2 of a node, so p there may be as large as 1/sqrt(C):
+ *  such nodes must not have their whole weight, neither for water nor for their pressure. */
+double MPMPoreSurface::normalize(const Range &range, double enough,
                                  const std::vector<double> &capacity)
 {
   double sum = 0.0;
-  for (int k = first; k < first + n; k++) {
+  for (int k = range.first; k < range.last; k++) {
     const double C = capacity[node[k]];
     weight[k] *= C > 0.0 ? std::min(1.0, C / enough) : 0.0;
     sum += weight[k];
   }
-  for (int k = first; k < first + n && sum > 0.0; k++) weight[k] /= sum;
+  for (int k = range.first; k < range.last && sum > 0.0; k++) weight[k] /= sum;
   return sum;
 }
 
@@ -434,8 +434,9 @@ double MPMPoreSurface::suction_outside(int part) const
   return c.kind == MPMPoreCondition::PRESSURE ? std::min(0.0, c.now) : 0.0;
 }
 
-/** Mean of the mobilities between the surface and a place, with the resistances of both in series. The mobility is linear in the depth, by
- *  the sums over points of capacity times mobility (conductance) and of capacity at its nodes. */
+/** Mean of the mobilities between the surface and a place, with the resistances of both in series.
+ *  The mobility is linear in the depth, by the sums over points of capacity times mobility
+ *  (conductance) and of capacity at its nodes. */
 double MPMPoreSurface::mobility_to_surface(const Place &place,
                                            const std::vector<double> &conductance,
                                            const std::vector<double> &capacity) const
@@ -446,7 +447,7 @@ double MPMPoreSurface::mobility_to_surface(const Place &place,
   const auto &lattice = field.lattice;
   double z = 0.0, zz = 0.0, mean = 0.0, zk = 0.0;
   double least = std::numeric_limits<double>::max(), most = 0.0;
-  for (int j = place.first; j < place.first + place.n; j++) {
+  for (int j = place.inside.first; j < place.inside.last; j++) {
     if (!(weight[j] > 0.0)) continue;
     int index[3] = {0, 0, 0};
     grid.node_index(grid.blocks[node[j] / NODES_PER_BLOCK], node[j] % NODES_PER_BLOCK, index);
@@ -470,11 +471,11 @@ double MPMPoreSurface::mobility_to_surface(const Place &place,
   return (inside - top) / log(inside / top);
 }
 
-/** With the weights a_k for the inflow of water and b_k for the pressure, the exchange is the matrix
- *  sum_k c_k a_k b_k^T, which is not symmetric. As conduction is added to it, its norm counts, not its
- *  eigenvalues. In the norm of the capacities it is at most the geometric mean of the norms of sum_k c_k a_k a_k^T
- *  and sum_k c_k b_k b_k^T, and these are at most their greatest sum of a row,
- *  (sum_k c_k a_ki)/C_i, as weights have the sum one. */
+/** With the weights a_k for the inflow of water and b_k for the pressure, the exchange is the
+ *  matrix sum_k c_k a_k b_k^T, which is not symmetric. As conduction is added to it, its norm
+ *  counts, not its eigenvalues. In the norm of the capacities it is at most the geometric mean of
+ *  the norms of sum_k c_k a_k a_k^T and sum_k c_k b_k b_k^T, and these are at most their greatest
+ *  sum of a row, (sum_k c_k a_ki)/C_i, as weights have the sum one. */
 double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage, const Wet *wet)
 {
   const double cell = field.lattice.cell_volume(), enough = ENOUGH * least_storage * cell;
@@ -483,24 +484,26 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
   rows.assign(2 * scalar.capacity.size(), 0.0);
   for (auto &place : places) {
     bool has_water = false;
-    for (int k = place.first; k < place.first + place.n; k++) {
+    for (int k = place.inside.first; k < place.inside.last; k++) {
       const double V = nodes[node[k] * field.pic.nreal + VOLUME];
       has_water = has_water || (V > ENOUGH * cell && capacity[node[k]] > 0.0);
     }
     // the surface may belong to another material, without water
-    const double inside = normalize(place.first, place.n, enough, capacity);
-    const double at = normalize(place.first_at, place.n_at, enough, capacity);
+    const double inside = normalize(place.inside, enough, capacity);
+    const double at = normalize(place.top, enough, capacity);
     has_water = has_water && inside > 0.0 && at > 0.0;
     place.area *= has_water ? std::min(1.0, std::min(inside, at) / MOSTLY) : 0.0;
     const std::vector<double> *outer = nullptr;
     if (wet) outer = &wet->conductance[suction_outside(place.part) < 0.0 ? 1 + place.part : 0];
     double K = 0.0, K_in = 0.0, C = 0.0, full = 0.0;    // full pores, if it varies
-    for (int k = place.first; k < place.first + place.n && has_water; k++) {
+    if (has_water) {
+      K = value(place.inside, scalar.volume);
+      C = value(place.inside, capacity);
+      if (varies) full = value(place.inside, conductance);
+    }
+    for (int k = place.inside.first; k < place.inside.last && has_water; k++) {
       const double inner = scalar.volume[node[k]];
-      K += weight[k] * inner;
       K_in += weight[k] * (outer ? 0.5 * (inner + (*outer)[node[k]]) : inner);
-      C += weight[k] * capacity[node[k]];
-      if (varies) full += weight[k] * conductance[node[k]];
     }
     double factor = C > 0.0 ? place.area / (C * INSET * field.lattice.h) : 0.0;
     if (full > 0.0 && C > 0.0)
@@ -509,9 +512,8 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
     place.in = factor * K_in;
     if (conditions[place.part].kind == MPMPoreCondition::FLUX) continue;
     const double most = std::max(place.in, place.out);
-    for (int k = place.first; k < place.first + place.n; k++) rows[2 * node[k]] += most * weight[k];
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
-      rows[2 * node[k] + 1] += most * weight[k];
+    spread(place.inside, most, rows, 2, 0);
+    spread(place.top, most, rows, 2, 1);
   }
   field.nodes.sum(rows.data(), 2, 0, 2);
   double taken = 0.0, given = 0.0;
@@ -524,13 +526,11 @@ double MPMPoreSurface::prepare(const MPMNodeScalar &scalar, double least_storage
   return sqrt(taken * given);
 }
 
-/* ----------------------------------------------------------------------
-   The flow that a uniform gradient brings to a node by its sum over points, w . g_i, must go through the surface there:
-   otherwise pressures of nodes beyond the surface grow until they stop the flow next to it. So each place takes
-   from its nodes their g_i instead of the values of their functions, shared with other places by these. The
-   pressure outside counts at the mean position of these nodes.
-------------------------------------------------------------------------- */
-
+/** The flow that a uniform gradient brings to a node by its sum over points, w . g_i, must go
+ *  through the surface there: otherwise pressures of nodes beyond the surface grow until they stop
+ *  the flow next to it. So each place takes from its nodes their g_i instead of the values of their
+ *  functions, shared with other places by these. The pressure outside counts at the mean position
+ *  of these nodes. */
 void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)
 {
   const auto &grid = field.grid;
@@ -540,7 +540,7 @@ void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)
   const auto visit = [&](const auto &f) {
     for (auto &place : places) {
       if (!(place.area > 0.0)) continue;
-      for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+      for (int k = place.top.first; k < place.top.last; k++)
         if (scalar.capacity[node[k]] > 0.0)
           f(place, k);
         else
@@ -562,9 +562,9 @@ void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)
   for (auto &place : places) {
     if (!(place.area > 0.0)) continue;
     double area = 0.0;
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++) area += weight[k];
+    for (int k = place.top.first; k < place.top.last; k++) area += weight[k];
     if (conditions[place.part].kind != MPMPoreCondition::FLUX || area == 0.0) place.area = area;
-    for (int k = place.first_at; k < place.first_at + place.n_at && area > 0.0; k++) {
+    for (int k = place.top.first; k < place.top.last && area > 0.0; k++) {
       weight[k] /= area;
       int index[3] = {0, 0, 0};
       grid.node_index(grid.blocks[node[k] / NODES_PER_BLOCK], node[k] % NODES_PER_BLOCK, index);
@@ -575,22 +575,14 @@ void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)
   }
 }
 
-double MPMPoreSurface::at_surface(const MPMNodeScalar &scalar, const Place &place) const
-{
-  double p = 0.0;
-  for (int k = place.first_at; k < place.first_at + place.n_at; k++)
-    p += weight[k] * scalar.value[node[k]];
-  return p;
-}
-
 void MPMPoreSurface::find_push(const MPMNodeScalar &scalar, std::vector<double> &of_nodes) const
 {
   const int nreal = field.pic.nreal;
   of_nodes.assign(nreal * field.grid.nnodes(), 0.0);
   for (const auto &place : places) {
     if (conditions[place.part].kind == MPMPoreCondition::FLUX) continue;
-    const double ahead = place.area * (at_surface(scalar, place) - place.outside_at);
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
+    const double ahead = place.area * (value(place.top, scalar.value) - place.outside_at);
+    for (int k = place.top.first; k < place.top.last; k++) {
       const double V = nodes[nreal * node[k] + VOLUME];
       if (!(weight[k] > 0.0 && V > 0.0)) continue;
       // the gradient corresponds to a drop to the pressure outside
@@ -607,7 +599,7 @@ void MPMPoreSurface::take_flow(const std::vector<double> &of_nodes)
   flow_is_given = true;
   for (auto &place : places) {
     double out = 0.0;
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++) {
+    for (int k = place.top.first; k < place.top.last; k++) {
       const double V = nodes[nreal * node[k] + VOLUME], *const q = &of_nodes[nreal * node[k]];
       if (!(weight[k] > 0.0 && V > 0.0)) continue;
       for (int d = 0; d < 3; d++) out += weight[k] * q[d] / V * place.normal[d];
@@ -621,14 +613,12 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
   for (auto &place : places) {
     const auto &condition = conditions[place.part];
     double Q = place.area * condition.now;
-    const double p = at_surface(scalar, place);
-    // where a pressure is given, water comes and goes with it, and the difference to p is dissipated
+    const double p = value(place.top, scalar.value);
+    // where a pressure is given, water comes and goes with it, and the difference to p is
+    // dissipated
     double behind = p;
     if (condition.kind != MPMPoreCondition::FLUX) {
-      double inside = 0.0;
-      for (int k = place.first; k < place.first + place.n; k++)
-        inside += weight[k] * scalar.value[node[k]];
-      const double drop = place.outside - inside;
+      const double drop = place.outside - value(place.inside, scalar.value);
       const double driven = (drop > 0.0 ? place.in : place.out) * drop,
                    most = place.area * place.most;
       Q = flow_is_given ? place.inflow + LEAK * place.out * (place.outside_at - p)
@@ -636,8 +626,7 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
       place.slope = driven > most ? 0.0 : drop > 0.0 ? place.in : place.out;
       if (flow_is_given || driven <= most) behind = place.outside_at;
     }
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
-      scalar.rate[node[k]] += weight[k] * Q;
+    spread(place.top, Q, scalar.rate);
     inflow[place.part] += Q;
     inflow[ENERGY] += Q * behind;
   }
@@ -646,10 +635,8 @@ void MPMPoreSurface::add_rates(MPMNodeScalar &scalar, std::vector<double> &inflo
 void MPMPoreSurface::add_changes(MPMNodeScalar &scalar) const
 {
   for (const auto &place : places) {
-    double inside = 0.0;
-    for (int k = place.first; k < place.first + place.n; k++)
-      inside += weight[k] * scalar.value[node[k]];
-    for (int k = place.first_at; k < place.first_at + place.n_at; k++)
+    const double inside = value(place.inside, scalar.value);
+    for (int k = place.top.first; k < place.top.last; k++)
       scalar.rate[node[k]] -= weight[k] * place.slope * inside;
   }
 }
