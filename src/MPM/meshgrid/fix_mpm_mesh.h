@@ -39,7 +39,6 @@ class FixMPMMesh :
     private MPMMeshOptions {
  public:
   FixMPMMesh(class LAMMPS *, int, char **);
-  ~FixMPMMesh() override;
   int setmask() override { return FixConst::INITIAL_INTEGRATE | FixConst::PRE_NEIGHBOR; }
   void init() override;
   void setup_pre_neighbor() override;
@@ -63,6 +62,7 @@ class FixMPMMesh :
   FixMPMMeshHeat *heat = nullptr;
   bigint steps = 0;
 
+  template <class F> F *find_attached(const char *advice) const;
   void find_contact();
   void find_heat();
   void check_points();
