@@ -147,7 +147,6 @@ void FixMPMMeshContact::begin_run(const BackgroundMesh &mesh)
 /** Pairs of bodies that touch at nodes. All ranks that have a node find the same there. */
 void FixMPMMeshContact::find(MPMMeshBody &of)
 {
-  const std::size_t nnode = sizes.size();
   found.clear();
   overlap = 0.0;
   for (int a = 0; a < count(); a++)
