@@ -9,14 +9,12 @@
 #ifndef LMP_MPM_BROADCAST_H
 #define LMP_MPM_BROADCAST_H
 
-// Data of plain types that ranks send to all others.
+// Sends data that one rank has read from a file to all ranks.
 
 #include "lmptype.h"
 
 #include <algorithm>
 #include <mpi.h>
-#include <numeric>
-#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -31,24 +29,6 @@ template <class Data> void broadcast(Data &data, MPI_Comm world)
   data.resize(n);
   for (bigint k = 0; k < n; k += PIECE)
     MPI_Bcast(data.data() + k, (int) (std::min(PIECE, n - k) * SIZE), MPI_BYTE, 0, world);
-}
-
-/** Returns the plain data of all ranks, in the order of ranks. Collective. */
-template <class T> std::vector<T> gather_on_all(const std::vector<T> &mine, MPI_Comm world)
-{
-  int nprocs;
-  MPI_Comm_size(world, &nprocs);
-  const int n = (int) mine.size();
-  std::vector<int> counts(nprocs), starts(nprocs, 0);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
-  std::vector<T> all((std::size_t) starts.back() + counts.back());
-  MPI_Datatype item;    // as the number of bytes may be more than an int
-  MPI_Type_contiguous(sizeof(T), MPI_BYTE, &item);
-  MPI_Type_commit(&item);
-  MPI_Allgatherv(mine.data(), n, item, all.data(), counts.data(), starts.data(), item, world);
-  MPI_Type_free(&item);
-  return all;
 }
 
 }    // namespace LAMMPS_NS

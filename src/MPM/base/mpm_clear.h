@@ -26,11 +26,5 @@ inline void clear_points(std::vector<double> &list, const Atom *atom, int width 
   std::fill_n(list.begin(), w * (atom->nlocal + atom->nghost), 0.0);
 }
 
-/** Memory of lists, for memory_usage(). */
-template <class... List> double bytes_of(const List &...lists)
-{
-  return (0.0 + ... + (double) (lists.capacity() * sizeof(typename List::value_type)));
-}
-
 }    // namespace LAMMPS_NS
 #endif

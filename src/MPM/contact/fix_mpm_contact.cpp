@@ -13,8 +13,8 @@
 
 #include "contact/fix_mpm_contact.h"
 
-#include "base/mpm_clear.h"
 #include "base/mpm_find_fixes.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
 #include "comm.h"

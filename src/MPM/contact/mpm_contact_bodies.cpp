@@ -8,7 +8,7 @@
 
 #include "contact/mpm_contact_bodies.h"
 
-#include "base/mpm_clear.h"
+#include "base/mpm_lists.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_node_sums.h"

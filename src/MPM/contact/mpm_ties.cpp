@@ -8,7 +8,7 @@
 
 #include "contact/mpm_ties.h"
 
-#include "base/mpm_broadcast.h"
+#include "base/mpm_lists.h"
 #include "field/mpm_body_contact.h"
 #include "field/mpm_node_system.h"
 

@@ -9,7 +9,7 @@
 #include "contact/pair_mpm_penalty.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "comm.h"

@@ -9,8 +9,7 @@
 #include "elements/pair_mpm_sheet.h"
 
 #include "atom.h"
-#include "base/mpm_broadcast.h"
-#include "base/mpm_clear.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "comm.h"
 #include "domain.h"

@@ -12,7 +12,7 @@
 #include "elements/pair_mpm_sheet.h"
 
 #include "atom.h"
-#include "base/mpm_broadcast.h"
+#include "base/mpm_lists.h"
 #include "comm.h"
 #include "domain.h"
 #include "elements/fix_mpm_elements.h"

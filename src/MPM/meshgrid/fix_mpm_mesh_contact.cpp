@@ -24,7 +24,7 @@
 
 #include "meshgrid/fix_mpm_mesh_contact.h"
 
-#include "base/mpm_clear.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "base/mpm_state.h"

@@ -20,7 +20,7 @@
 
 #include "meshgrid/fix_mpm_mesh_heat.h"
 
-#include "base/mpm_clear.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"

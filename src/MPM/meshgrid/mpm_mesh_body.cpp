@@ -9,8 +9,8 @@
 #include "meshgrid/mpm_mesh_body.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_find_fixes.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "error.h"

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_MESH_FBAR_H
 #define LMP_MPM_MESH_FBAR_H
 
-#include "base/mpm_clear.h"
+#include "base/mpm_lists.h"
 #include "mesh/background_mesh.h"
 #include "meshgrid/mpm_mesh_conditions.h"
 

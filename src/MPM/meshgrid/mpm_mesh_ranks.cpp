@@ -8,7 +8,7 @@
 
 #include "meshgrid/mpm_mesh_ranks.h"
 
-#include "base/mpm_clear.h"
+#include "base/mpm_lists.h"
 #include "comm.h"
 
 #include <algorithm>

@@ -24,7 +24,7 @@
 #include "refine/mpm_two_scale.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
+#include "base/mpm_lists.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_point_map.h"
