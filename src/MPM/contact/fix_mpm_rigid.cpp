@@ -14,14 +14,14 @@
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
-#include "field/mpm_fluid.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "force.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
 #include "modify.h"
 #include "update.h"
-#include "walls/mpm_region_body.h"
+#include "walls/mpm_region_cut.h"
 #include "walls/region_mpm_mesh.h"
 
 #include <algorithm>

@@ -345,7 +345,7 @@ void MPMContactTrial::visit_row(std::size_t row,
   }
 }
 
-void MPMContactTrial::forget_pushes()
+void MPMContactTrial::clear_impulses()
 {
   for (auto &tie : ties) MathExtra::zero3(tie.push);
 }
