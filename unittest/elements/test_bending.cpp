@@ -9,7 +9,6 @@
 #include "math/matrix.h"
 #include "mesh/bending.h"
 #include "mesh/gmsh.h"
-#include "mesh/shared_strain.h"
 
 #include "gtest/gtest.h"
 

@@ -6,8 +6,7 @@
 // Nodes that are near each other along a surface, what fits between them, and what goes through.
 
 #include "mesh/near_nodes.h"
-#include "mesh/passages.h"
-#include "mesh/triangle_gap.h"
+#include "mesh/face_contact.h"
 
 #include "gtest/gtest.h"
 

@@ -6,16 +6,15 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Each body has its own velocity field. Where two of them have mass at a node and touch
+/* Each body has its own velocity field. Where two of them have mass at a node and touch
    (MPMContactSearch), impulses between them follow from the law of contact (MPMNodeContact), at all
    nodes of an explicit step (MPMContactSolver). In implicit steps a solver decides with
-   MPMContactTrial.
-------------------------------------------------------------------------- */
+   MPMContactTrial. */
 
 #include "contact/fix_mpm_contact.h"
 
 #include "base/mpm_find_fixes.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
 #include "comm.h"
@@ -34,10 +33,7 @@ using namespace MPM_NS;
 
 static constexpr int LOOK_EVERY = 50;    // steps after which ranks compare what they have seen
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ...
-------------------------------------------------------------------------- */
-
+/** fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ... */
 Options MPMContactOptions::declare()
 {
   using namespace option;
@@ -117,8 +113,6 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
   restart_global = 1;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMContact::init()
 {
   find_bodies();
@@ -192,11 +186,8 @@ void FixMPMContact::check_other_contacts() const
   }
 }
 
-/* ----------------------------------------------------------------------
-   The nodes of a field that is a part of a body also carry the momentum of the points of finer
-   fields (fix_mpm_refine.cpp)
-------------------------------------------------------------------------- */
-
+/** The nodes of a field that is a part of a body also carry the momentum of the points of finer
+ *  fields (fix_mpm_refine.cpp). */
 void FixMPMContact::check_refined(MPMContactBody &body)
 {
   body.refined = nullptr;
@@ -218,28 +209,24 @@ void FixMPMContact::check_refined(MPMContactBody &body)
 
 void FixMPMContact::refuse_implicit_steps() const
 {
-  const char *what = nullptr, *instead = nullptr;
-  if (law == ADHESIVE) {
-    what = "law adhesive";
-    instead = "use law stick";
-  } else if (friction.still > friction.kinetic) {
-    what = "a coefficient of static friction";
-    instead = "use one coefficient";
-  } else if (normal_by != COLINEAR) {
-    what = "normal mass, volume, and logistic, as they take the one of the interface itself";
-    instead = "remove normal";
-  } else if (heating) {
-    what = "heat";
-    instead = "remove it";
-  } else if (bodies.on_several_lattices) {
-    what = "bodies on several lattices (fix mpm/refine)";
-    instead = "use one lattice";
-  }
-  if (what)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/contact {}: implicit steps (fix mpm/implicit) do not know {}: {}, or "
-               "explicit steps",
-               id, what, instead);
+  const struct {
+    bool given;
+    const char *what, *instead;
+  } unknown[] = {{law == ADHESIVE, "law adhesive", "use law stick"},
+                 {friction.still > friction.kinetic, "a coefficient of static friction",
+                  "use one coefficient"},
+                 {normal_by != COLINEAR,
+                  "normal mass, volume, and logistic, as they take the one of the interface itself",
+                  "remove normal"},
+                 {heating != nullptr, "heat", "remove it"},
+                 {bodies.on_several_lattices, "bodies on several lattices (fix mpm/refine)",
+                  "use one lattice"}};
+  for (const auto &[given, what, instead] : unknown)
+    if (given)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/contact {}: implicit steps (fix mpm/implicit) do not know {}: {}, or "
+                 "explicit steps",
+                 id, what, instead);
 }
 
 /** Called by fix mpm, whose init() may come before this one; a missing field is found here. */
@@ -263,8 +250,6 @@ void FixMPMContact::init_action()
                    id, (*musl)->id());
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool FixMPMContact::couples(const std::string &a, const std::string &b) const
 {
   return a != b && std::count(names.begin(), names.end(), a) &&
@@ -276,16 +261,16 @@ bool FixMPMContact::touches(const std::string &name) const
   return std::count(names.begin(), names.end(), name) > 0;
 }
 
+bool FixMPMContact::decides_contact(const MPMField &field) const
+{
+  return touches(field.id());
+}
+
 bool FixMPMContact::has_law_of(const FixMPMContact &other) const
 {
   const MPMContactLaw &law_of_other = other;
   return law_of_other == *this && normal_by == other.normal_by && gap == other.gap &&
       full == other.full;
-}
-
-bool FixMPMContact::decides_contact(const MPMField &field) const
-{
-  return touches(field.id());
 }
 
 /** Gives the heat of two bodies that slide to their nodes; returns it. */
@@ -308,10 +293,7 @@ double FixMPMContact::heat_of(const MPMNodeContact &pair, bool owned)
   return heat;
 }
 
-/* ----------------------------------------------------------------------
-   forces between bodies, work of the friction, and the ledgers of the fields
-------------------------------------------------------------------------- */
-
+/** Forces between bodies, work of the friction, and the ledgers of the fields. */
 void FixMPMContact::count(const MPMContacts::Node &node, const MPMContactBodies::Velocities &start)
 {
   for (int p = node.first; p < node.last; p++) {
@@ -333,8 +315,6 @@ void FixMPMContact::count(const MPMContacts::Node &node, const MPMContactBodies:
   }
   bodies.book(node.record, start);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMContact::act(double dt, Stage stage)
 {
@@ -379,11 +359,8 @@ void FixMPMContact::write_restart(FILE *fp)
   fwrite(text.c_str(), 1, text.size() + 1, fp);
 }
 
-/* ----------------------------------------------------------------------
-   rank 0 goes on with the totals. Files of older versions have the number of pairs in place of
-   minus this number, and no names of the fields behind the work
-------------------------------------------------------------------------- */
-
+/** Rank 0 goes on with the totals. Files of older versions have the number of pairs in place of
+ *  minus this number, and no names of the fields behind the work. */
 void FixMPMContact::restart(char *buf)
 {
   const auto *const from = (const double *) buf;
@@ -406,6 +383,5 @@ void FixMPMContact::restart(char *buf)
 double FixMPMContact::memory_usage()
 {
   return (heating ? heating->memory_usage() : 0.0) + bodies.memory_usage() +
-      contacts.pairs.capacity() * sizeof(MPMNodeContact) +
-      contacts.nodes.capacity() * sizeof(MPMContacts::Node);
+      bytes_of(contacts.pairs, contacts.nodes);
 }

@@ -16,7 +16,6 @@ FixStyle(mpm/contact,FixMPMContact);
 #define LMP_FIX_MPM_CONTACT_H
 
 #include "contact/mpm_contact_bodies.h"
-#include "contact/mpm_contact_report.h"
 #include "contact/mpm_contact_search.h"
 #include "contact/mpm_contact_solver.h"
 #include "contact/mpm_contact_trial.h"
@@ -31,8 +30,6 @@ FixStyle(mpm/contact,FixMPMContact);
 #include <vector>
 
 namespace LAMMPS_NS {
-class MPMField;
-
 /** Keywords of fix mpm/contact. */
 struct MPMContactOptions : MPMContactLaw, MPMContactSearchOptions {
   MPMFrictionHeatOptions heat;

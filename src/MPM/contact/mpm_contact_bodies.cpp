@@ -8,6 +8,7 @@
 
 #include "contact/mpm_contact_bodies.h"
 
+#include "base/mpm_lists.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_interfaces.h"
@@ -22,10 +23,6 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/* ----------------------------------------------------------------------
-   a body
-------------------------------------------------------------------------- */
 
 int64_t MPMContactBody::node_of(const double *record) const
 {
@@ -96,10 +93,6 @@ void MPMContactBody::mark_near(int slot)
     }
 }
 
-/* ----------------------------------------------------------------------
-   each field has blocks that others need: all are renewed together
-------------------------------------------------------------------------- */
-
 void MPMContactBodies::begin_run()
 {
   inside.find(*list[0].field, *domain);
@@ -158,10 +151,7 @@ void MPMContactBodies::blocks_found()
   }
 }
 
-/* ----------------------------------------------------------------------
-   where bodies may meet, a rank must know the mass of all bodies at the nodes of any of them
-------------------------------------------------------------------------- */
-
+/** Where bodies may meet, a rank must know the mass of all bodies at the nodes of any of them. */
 void MPMContactBodies::extend_topology(MPMField &field)
 {
   for (const auto &body : list) {
@@ -171,7 +161,6 @@ void MPMContactBodies::extend_topology(MPMField &field)
 
     // and also their mirror images at fixed faces. Blocks that are added are visited, too, which
     // gives images of images
-
     for (std::size_t ib = 0; ib < field.grid.blocks.size(); ib++) {
       int b[3];
       std::copy_n(field.grid.blocks[ib].b, 3, b);
@@ -204,7 +193,6 @@ bool MPMContactBodies::find_shared()
   }
 
   // the action of walls on the nodes, after contact
-
   for (auto &body : list) {
     body.held.assign(body.field->grid.nnodes(), 0);
     for (auto *fix : modify->get_fix_by_style("^mpm/boundary$"))
@@ -216,10 +204,6 @@ bool MPMContactBodies::find_shared()
   lists_valid = true;
   return may_touch;
 }
-
-/* ----------------------------------------------------------------------
-   gradients and volumes of the bodies at the nodes
-------------------------------------------------------------------------- */
 
 bool MPMContactBodies::map(bool with_volumes)
 {
@@ -259,13 +243,10 @@ bool MPMContactBodies::map(bool with_volumes)
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   On several lattices, everything that the function of a node reaches decides what touches,
-   including points of finer lattices; the momentum of the node has only points without a free node
-   between. Sums of a part of a function over small points differ from those over large ones, but
-   with points as boxes they are the same
-------------------------------------------------------------------------- */
-
+/** On several lattices, everything that the function of a node reaches decides what touches,
+ *  including points of finer lattices; the momentum of the node has only points without a free node
+ *  between. Sums of a part of a function over small points differ from those over large ones, but
+ *  with points as boxes they are the same. */
 void MPMContactBodies::map_content(MPMContactBody &body, bool with_volumes)
 {
   const Weight weight = by_mass ? Weight::MASS : Weight::VOLUME;
@@ -365,10 +346,8 @@ void MPMContactBodies::book(double *const *record, const Velocities &start)
 
 double MPMContactBodies::memory_usage() const
 {
-  double bytes = shared.capacity() * sizeof(MPMSharedBlock);
+  double bytes = bytes_of(shared);
   for (const auto &body : list)
-    bytes +=
-        (body.gradient.capacity() + body.fraction.capacity() + body.predicted.held.capacity()) *
-        sizeof(double);
+    bytes += bytes_of(body.gradient, body.fraction, body.predicted.held);
   return bytes;
 }

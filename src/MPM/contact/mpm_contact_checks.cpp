@@ -125,13 +125,10 @@ void MPMContactChecks::warn_thin()
   if (thin.size() > 1) warn_of_thin_pair(thin);
 }
 
-/* ----------------------------------------------------------------------
-   A thin body fills no volume, so that the nodes between it and another one are not full. And it
-   has gradients on both of its sides: on the side away from the other body, its normal is the wrong
-   one, and contact with the mean of both normals pulls the other body through. With weights by
-   volume the normal is that of the other body.
-------------------------------------------------------------------------- */
-
+/** A thin body fills no volume, so that the nodes between it and another one are not full. And it
+ *  has gradients on both of its sides: on the side away from the other body, its normal is the
+ *  wrong one, and contact with the mean of both normals pulls the other body through. With weights
+ *  by volume the normal is that of the other body. */
 void MPMContactChecks::warn_of_thin_body(int thin, int other)
 {
   if (comm->me ||
@@ -144,13 +141,11 @@ void MPMContactChecks::warn_of_thin_body(int thin, int other)
                  fix.id, bodies[thin].field->id(), bodies[other].field->id());
 }
 
-/* ----------------------------------------------------------------------
-   Two thin bodies never touch where nodes must be full, however near they are. Without this
-   condition, only nodes that both reach hold them: the other nodes fall freely in each step, as
-   nothing joins the rows of nodes around a single row of points. FLIP then sinks with g dt times
-   the ratio of the shares of both kinds of nodes, and affine velocities keep falling at all nodes
-------------------------------------------------------------------------- */
-
+/** Two thin bodies never touch where nodes must be full, however near they are. Without this
+ *  condition, only nodes that both reach hold them: the other nodes fall freely in each step, as
+ *  nothing joins the rows of nodes around a single row of points. FLIP then sinks with g dt times
+ *  the ratio of the shares of both kinds of nodes, and affine velocities keep falling at all nodes.
+ */
 void MPMContactChecks::warn_of_thin_pair(const std::vector<int> &thin)
 {
   const double enough = options.gap ? options.full : 1.0;

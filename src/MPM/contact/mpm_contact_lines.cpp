@@ -6,8 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   At the edge of a body on a wider one, the free side of the wider one continues the interface, and
+/* At the edge of a body on a wider one, the free side of the wider one continues the interface, and
    that of the other one is at an angle to it: with the area vectors A of
    MPMContactSearch::interface_at(), normals would be inclined there, most of all at nodes beyond
    the edge. The wider body covers more of the cross-section of a line of nodes through the
@@ -19,8 +18,7 @@
    a body covers only the part c of the cross-section of the line, next to its edge, its volumes are
    divided by c:
 
-      g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
-------------------------------------------------------------------------- */
+      g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b) */
 
 #include "contact/mpm_contact_lines.h"
 

@@ -6,8 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Normals. The sum over the points of a body at the node, sum_p V_p grad N, points out of it and
+/* Normals. The sum over the points of a body at the node, sum_p V_p grad N, points out of it and
    its length is the area of the interface that belongs to the node. The normal of two bodies is the
    difference of their gradients, either as they are (the body with more volume, or mass, at the
    node has more weight) or after each was made a unit vector (colinear).
@@ -19,8 +18,7 @@
    nodes, and to less while there is a gap or beyond the end of one of them. The part of this volume
    that is outside of fixed faces of the box does not count (MPMInsideFraction).
 
-   Water. For two bodies with water, which do not exchange any, the mean counts.
-------------------------------------------------------------------------- */
+   Water. For two bodies with water, which do not exchange any, the mean counts. */
 
 #include "contact/mpm_contact_search.h"
 
@@ -54,8 +52,6 @@ static constexpr double ROUNDING = 1.0e-8, BOX_ROUNDING = 1.0e-3;
 
 static constexpr double SLACK = 0.02, NEARLY = 0.8;
 
-/* ---------------------------------------------------------------------- */
-
 int MPMContacts::Node::count_bodies(int n) const
 {
   return (int) (n - std::count(record, record + n, (double *) nullptr));
@@ -84,10 +80,7 @@ bool MPMContactSearch::begin_step()
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   nodes where two bodies have mass and make(block, n, pair) finds contact
-------------------------------------------------------------------------- */
-
+/** Nodes where two bodies have mass and make(block, n, pair) finds contact. */
 template <class Make> void MPMContactSearch::visit_nodes(MPMContacts &contacts, const Make &make)
 {
   const int nbodies = bodies.size();
@@ -142,7 +135,6 @@ bool MPMContactSearch::find_normal(const MPMSharedBlock &block, int n, MPMNodeCo
   for (double &x : pair.n) x /= length;
 
   // gradients of the bodies at this node itself; its mirror nodes have their own
-
   const auto own = [&](int body, const double *record) {
     return std::fabs(MathExtra::dot3(bodies[body].gradient_at(record), pair.n));
   };
@@ -211,18 +203,15 @@ void MPMContactSearch::report_missed_water()
                    fix.id, all[1] / (all[0] + all[1]));
 }
 
-/* ----------------------------------------------------------------------
-   The integrals of the gradients of a function over two bodies are g_a = A + L_a and g_b = -A +
-   L_b. A is the integral of the function over the interface, as area and normal, and L_a and L_b
-   are those over the free sides. Inside an interface, and where the side of one body continues that
-   of the other, also at walls, L_a and L_b are in proportion to the volumes V that the bodies have
-   at the node. (With images, as in explicit steps, an inclined interface would not be in balance
-   next to a wall, where nodes and images move along it independently.) L_a + L_b is g_a + g_b, so
-   that
-
-      A = [g_a - g_b - (g_a + g_b) (V_a - V_b)/(V_a + V_b)]/2
-------------------------------------------------------------------------- */
-
+/** The integrals of the gradients of a function over two bodies are g_a = A + L_a and g_b = -A +
+ *  L_b. A is the integral of the function over the interface, as area and normal, and L_a and L_b
+ *  are those over the free sides. Inside an interface, and where the side of one body continues
+ *  that of the other, also at walls, L_a and L_b are in proportion to the volumes V that the bodies
+ *  have at the node. (With images, as in explicit steps, an inclined interface would not be in
+ *  balance next to a wall, where nodes and images move along it independently.) L_a + L_b is g_a +
+ *  g_b, so that
+ *
+ *     A = [g_a - g_b - (g_a + g_b) (V_a - V_b)/(V_a + V_b)]/2 */
 void MPMContactSearch::interface_at(int a, int b, const int *index, double *area) const
 {
   const MPMContactBody &first = bodies[a], &second = bodies[b];
@@ -252,10 +241,7 @@ void MPMContactSearch::find_interfaces(MPMContacts &contacts)
   });
 }
 
-/* ----------------------------------------------------------------------
-   normals by logistic regression, with the weights of the shape functions
-------------------------------------------------------------------------- */
-
+/** Normals by logistic regression, with the weights of the shape functions. */
 void MPMContactSearch::separate_points(MPMContacts &contacts) const
 {
   constexpr int NREAL = PlaneBetween::NREAL;
@@ -265,7 +251,6 @@ void MPMContactSearch::separate_points(MPMContacts &contacts) const
 
   // contact nodes by their index in the grids of the fields; images on periodic axes are the same
   // node
-
   std::vector<std::vector<int>> wanted(nfields);
   for (int k = 0; k < nfields; k++) {
     Grid &grid = bodies[k].field->grid;

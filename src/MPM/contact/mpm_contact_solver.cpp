@@ -6,16 +6,14 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Momentum is conserved to round-off as impulses come in pairs. With more than two bodies at a node
+/* Momentum is conserved to round-off as impulses come in pairs. With more than two bodies at a node
    all pairs are treated alike: projected Jacobi iterations on the impulses of all pairs, so that
    the order in which the bodies are named has no influence.
 
    Where walls mirror one body and not the other, contact at a node changes the velocity of this
    body at the mirror nodes of the node, too: these nodes are solved together. If they were solved
    one after the other, they would leave an approach in each step: water went into the clamped end
-   of a plate.
-------------------------------------------------------------------------- */
+   of a plate. */
 
 #include "contact/mpm_contact_solver.h"
 
@@ -111,11 +109,8 @@ double MPMContactSolver::iterate(const Problem &problem)
   return largest;
 }
 
-/* ----------------------------------------------------------------------
-   Gauss-Seidel iterations for nodes that depend on each other; mirrored: by walls that move a body
-   with its mirror nodes. Where masses differ much, these converge slowly, and are accelerated.
-------------------------------------------------------------------------- */
-
+/** Gauss-Seidel iterations for nodes that depend on each other; mirrored: by walls that move a body
+ *  with its mirror nodes. Where masses differ much, these converge slowly, and are accelerated. */
 void MPMContactSolver::solve_group(const Problem *first, const Problem *last, bool mirrored)
 {
   std::vector<double> &x = impulses;

@@ -56,7 +56,6 @@ class MPMContactSolver : protected Pointers {
   bool decided = false;
 
   // nodes that are solved together
-
   std::vector<Problem>
       coupled;    // where walls move one body with its mirror nodes, but not another
   std::vector<double> impulses;

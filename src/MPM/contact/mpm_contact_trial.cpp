@@ -6,28 +6,20 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Contact between bodies in the steps of a solver (MPMBodyContact). In explicit steps each node
-// that bodies share is in contact by itself: its velocities are those of both bodies, also one and
-// two layers of nodes inside, so that the strain of a soft body next to a hard one is that of the
-// hard one. In the balance of forces, this would make a soft body about half a cell thinner. Here,
-// nodes are tied together along lines through the interface, by a single condition
-//
-//    sum_k a_k n_k . (u_a,k - u_b,k) = g,   sum_k a_k = 1
-//
-// with the areas a_k of the interface at these nodes, and normals n_k: a_k n_k is the integral of
-// the gradients of their functions over the bodies. For a plane interface, a_k = N_k at its
-// position, so that the condition holds for the motion there, and a pressure on it is in balance
-// with uniform stress, node by node, for any position between nodes and any direction of the plane.
-//
-// The gap g is the volume that both bodies lack along the line, over the area of the interface.
-// Where a body covers only the share c of the cross-section of the line, next to its edge, its
-// volumes are divided by c (MPMContactLines):
-//
-//    g = h |n_axis| sum_k (1 - V_a,k/c_a - V_b,k/c_b)
-//
-// Bodies that touch are held along the normal without any penalty, as long as this does not need a
-// pull. With law stick, and law coulomb while they stick, they are also held along the mean plane
-// of the interface of the line, with law coulomb as long as friction can hold them.
+/* In explicit steps each node that bodies share is in contact by itself: its velocities are those of
+   both bodies, also one and two layers of nodes inside. In the balance of forces, this would make a
+   soft body next to a hard one about half a cell thinner. Here, nodes are tied together along lines
+   through the interface, by a single condition
+
+     sum_k a_k n_k . (u_a,k - u_b,k) = g,   sum_k a_k = 1
+
+   with the areas a_k of the interface at these nodes, normals n_k, and the gap g of the line
+   (MPMContactLines). For a plane interface, a_k = N_k at its position, so that the condition holds
+   for the motion there, and a pressure on it is in balance with uniform stress, node by node.
+
+   Bodies that touch are held along the normal without any penalty, as long as this does not need a
+   pull. With law stick, and law coulomb while they stick, they are also held along the mean plane
+   of the interface of the line, with law coulomb as long as friction can hold them. */
 
 #include "contact/mpm_contact_trial.h"
 
@@ -59,8 +51,8 @@ static constexpr double LATER = 1.1;
 static constexpr double ALONG_AXIS = 0.99;
 // motion of a held row, relative to that without walls
 static constexpr double HELD = 1.0e-12;
-// changes between sliding and sticking of a tie in a step before it may take more friction; relative
-// to the largest force, the increase for each later change, and the limit
+// changes between sliding and sticking of a tie in a step before it may take more friction;
+// relative to the largest force, the increase for each later change, and the limit
 static constexpr int FREE_CHANGES = 2;
 static constexpr double MORE_EACH = 1.0e-2, MOST_MORE = 0.05;
 // times that a tie parts in a step before it slips
@@ -89,10 +81,6 @@ int MPMContactTrial::rows_of_tie() const
 {
   return law.law == MPMContactLaw::STICK || has_friction() ? bodies.dim() : 1;
 }
-
-/* ----------------------------------------------------------------------
-   ties
-------------------------------------------------------------------------- */
 
 /** Finds directions along the interface in which bodies can move against each other; none along
  *  components that walls hold in both bodies (held). */
@@ -251,8 +239,6 @@ void MPMContactTrial::check_overlap()
              fix.id, most);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMContactTrial::begin_trials(MPMField &, double dt, double, double, bool rests)
 {
   trial_dt = dt;
@@ -278,10 +264,6 @@ void MPMContactTrial::begin_trials(MPMField &, double dt, double, double, bool r
     tie.sticks = law.law == MPMContactLaw::STICK || has_friction();
   }
 }
-
-/* ----------------------------------------------------------------------
-   the projection
-------------------------------------------------------------------------- */
 
 bool MPMContactTrial::touches() const
 {
@@ -392,24 +374,21 @@ void MPMContactTrial::take_stop()
   for (auto &tie : ties) MathExtra::copy3(tie.push, tie.stop);
 }
 
-/* ----------------------------------------------------------------------
-   Coulomb's law, without any regularization. A tie that sticks has rows along the interface, whose
-   forces show when friction cannot hold them. A tie that slides has friction mu N against the
-   direction w of its slip, on the nodes of both bodies in their shares of the interface, and sticks
-   again if it would slide back. This is Newton's method for the projection of P. Alart, A. Curnier,
-   Comput. Methods Appl. Mech. Eng. 92 (1991) 353, with an exact condition for ties that stick. With
-   the slip s in the step,
-
-      w = (s + d w0)/|s + d w0|
-
-   where w0 is the direction of the previous iteration, or of the force with which the tie stuck:
-   friction does not jump when a tie begins to slide, and w is that of s in the end. As d becomes a
-   small part of s, iterations converge to that direction fast, also in short steps: with a constant
-   d, each one would leave d/(d + |s|) of the error. In 2d, w is w0, and friction changes with N
-   alone. N may be negative until it is decided which ties part: as long as the sets stay, forces
-   have no kinks
-------------------------------------------------------------------------- */
-
+/** Coulomb's law, without any regularization. A tie that sticks has rows along the interface, whose
+ *  forces show when friction cannot hold them. A tie that slides has friction mu N against the
+ *  direction w of its slip, on the nodes of both bodies in their shares of the interface, and
+ *  sticks again if it would slide back. This is Newton's method for the projection of P. Alart, A.
+ *  Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, with an exact condition for ties that
+ *  stick. With the slip s in the step,
+ *
+ *     w = (s + d w0)/|s + d w0|
+ *
+ *  where w0 is the direction of the previous iteration, or of the force with which the tie stuck:
+ *  friction does not jump when a tie begins to slide, and w is that of s in the end. As d becomes a
+ *  small part of s, iterations converge to that direction fast, also in short steps: with a
+ *  constant d, each one would leave d/(d + |s|) of the error. In 2d, w is w0, and friction changes
+ *  with N alone. N may be negative until it is decided which ties part: as long as the sets stay,
+ *  forces have no kinks. */
 bool MPMContactTrial::rubs() const
 {
   return has_friction() && std::any_of(ties.begin(), ties.end(), [this](const Tie &tie) {
@@ -642,12 +621,9 @@ double MPMContactTrial::find_errors(const double *u, std::vector<double> &wrong,
   return worst;
 }
 
-/* ----------------------------------------------------------------------
-   At first, everything that is wrong is changed. If this oscillates, only the worst is, and what is
-   almost right stays. While forces are not in balance yet, errors that are not larger than the
-   imbalance stay, too
-------------------------------------------------------------------------- */
-
+/** At first, everything that is wrong is changed. If this oscillates, only the worst is, and what
+ *  is almost right stays. While forces are not in balance yet, errors that are not larger than the
+ *  imbalance stay, too. */
 bool MPMContactTrial::decide(const double *u, double unbalanced)
 {
   std::vector<double> wrong;

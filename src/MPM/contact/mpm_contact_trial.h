@@ -11,8 +11,8 @@
 
 #include "contact/mpm_contact_bodies.h"
 #include "contact/mpm_contact_lines.h"
-#include "contact/mpm_contact_report.h"
 #include "contact/mpm_contact_search.h"
+#include "contact/mpm_node_contact.h"
 #include "field/mpm_trial_contact.h"
 #include "pointers.h"
 
@@ -26,7 +26,6 @@ class MPMContactTrial : public MPMBodyContact, protected Pointers {
  public:
   MPMContactTrial(class LAMMPS *, const Fix &, const MPMContactSearchOptions &,
                   const MPMContactLaw &, MPMContactBodies &, MPMContactSearch &, MPMContacts &);
-  ~MPMContactTrial() = default;
 
   /** Prepares a run. */
   void begin_run();

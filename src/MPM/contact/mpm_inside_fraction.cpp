@@ -28,7 +28,6 @@ void MPMInsideFraction::find(const MPMField &field, const Domain &box)
 
     // fraction of the function of a node that is between the faces. Points with a size fill the
     // cells, and have the mean of the linear function
-
     const auto inside = [&](int node) {
       int first;
       double w[4], sum = 0.0;

@@ -6,11 +6,9 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   A node in the other material that reaches points of conducting ones on one side alone sees them
+/* A node in the other material that reaches points of conducting ones on one side alone sees them
    at a mean distance r of 0.4 node spacings at the interface, and more further away (quadratic
-   functions; in a concave corner 0.7 times that). Where they are on two sides, r is small.
-------------------------------------------------------------------------- */
+   functions; in a concave corner 0.7 times that). Where they are on two sides, r is small. */
 
 #include "contact/mpm_leaks.h"
 

@@ -6,8 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   The velocities of two bodies at a node after the momentum equation show whether they approach
+/* The velocities of two bodies at a node after the momentum equation show whether they approach
    each other along the normal of the interface. If so, equal and opposite impulses remove the
    approach, and in the plane of the interface as much of the sliding as the law of friction allows:
 
@@ -19,13 +18,16 @@
 
    Pore water takes a part J_w of J_n, dt int N p n over the surface of a body, as on walls. The
    rest is between grains and gives friction: J_t <= mu (J_n - J_w). Where J_n would be below J_w,
-   grains part, and the water alone pushes.
-------------------------------------------------------------------------- */
+   grains part, and the water alone pushes. */
 
 #include "contact/mpm_node_contact.h"
 
+#include "force.h"
+#include "update.h"
+
 #include <algorithm>
 #include <cmath>
+#include <mpi.h>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -34,8 +36,6 @@ using namespace MPM_NS;
 // they stick: it must be at least this part of their speeds
 
 static constexpr double APPROACH = 1.0e-12;
-
-/* ---------------------------------------------------------------------- */
 
 void MPMContactLaw::declare_law(Options &o, bool adhesion)
 {
@@ -85,8 +85,6 @@ double MPMContactLaw::adhesion_at(double opening) const
   return std::max(0.0, 1.0 - opening * normal_strength / (2.0 * release_work));
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool MPMNodeWalls::moves_with_mirrors(const double *record) const
 {
   bool moves = false;
@@ -100,8 +98,6 @@ double MPMNodeWalls::velocity_of(const double *record, int d) const
   if (mirrored >> d & 1) return velocity[d] + (record[d] - start[d]) * record[3] / mass[d];
   return record[d];
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMNodeContact::begin(const MPMNodeWalls &of_a, const MPMNodeWalls &of_b)
 {
@@ -120,18 +116,15 @@ void MPMNodeContact::push(int dim) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   Finds the velocity u of a relative to b, and un along the normal. Returns the mass that yields to
-   an impulse.
-
-   A body that a wall holds does not yield: the wall takes the impulse of contact. If it were
-   treated as free, the other body would move on into it, a little in each step.
-
-   At a mirror, a node moves with its mirror node, and both have the mass of both; contact pushes on
-   each. Components that are mirrored in both bodies are the same at both nodes: contact at the node
-   inside determines them.
-------------------------------------------------------------------------- */
-
+/** Finds the velocity u of a relative to b, and un along the normal. Returns the mass that yields
+ *  to an impulse.
+ *
+ *  A body that a wall holds does not yield: the wall takes the impulse of contact. If it were
+ *  treated as free, the other body would move on into it, a little in each step.
+ *
+ *  At a mirror, a node moves with its mirror node, and both have the mass of both; contact pushes
+ *  on each. Components that are mirrored in both bodies are the same at both nodes: contact at the
+ *  node inside determines them. */
 double MPMNodeContact::approach(int dim, int neighbors, double *u, double &un) const
 {
   un = u[0] = u[1] = u[2] = 0.0;
@@ -213,4 +206,52 @@ double MPMNodeContact::iterate(const MPMContactLaw &law, int dim, int neighbors,
     rounding += law.rounded * m * (fabs(ra[d]) + fabs(rb[d]));
   }
   return change / (fabs(J) + length + rounding + 1.0e-300);
+}
+
+double MPMContactReport::Entry::add(const MPMNodeContact &pair, int dim)
+{
+  double friction = 0.0;
+  count += 1.0;
+  for (int d = 0; d < dim; d++) {
+    impulse[d] += pair.impulse(d);
+    friction += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
+  }
+  return friction;
+}
+
+void MPMContactReport::set_bodies(int n)
+{
+  nbodies = n;
+  entries.assign(n * (n - 1) / 2, {});
+}
+
+void MPMContactReport::begin_step(double dt)
+{
+  dt_last = dt;
+  for (auto &entry : entries) entry = {{0.0, 0.0, 0.0}, 0.0, entry.work};
+}
+
+double MPMContactReport::work()
+{
+  double mine = 0.0, all;
+  for (const auto &entry : entries) mine += entry.work;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, world);
+  return all * force->mvv2e;
+}
+
+double MPMContactReport::at(int row, int column)
+{
+  if (sums_step != update->ntimestep) {
+    sums_step = update->ntimestep;
+    std::vector<double> mine;
+    for (const auto &[impulse, count, work] : entries) {
+      for (const double J : impulse)
+        mine.push_back(dt_last > 0.0 ? J / (dt_last * force->ftm2v) : 0.0);
+      mine.push_back(count);
+      mine.push_back(work * force->mvv2e);
+    }
+    sums.resize(mine.size());
+    MPI_Allreduce(mine.data(), sums.data(), (int) mine.size(), MPI_DOUBLE, MPI_SUM, world);
+  }
+  return sums[COLUMNS * row + column];
 }

@@ -8,6 +8,7 @@
 
 #include "contact/mpm_ties.h"
 
+#include "base/mpm_lists.h"
 #include "field/mpm_node_system.h"
 #include "field/mpm_trial_contact.h"
 
@@ -48,13 +49,7 @@ void MPMTies::number_rows(std::vector<char> &walled, const std::vector<char> &is
       });
     mine.push_back(touched);
   }
-  std::vector<int> counts(comm->nprocs), begins(comm->nprocs, 0);
-  const int count = (int) mine.size();
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  for (int k = 1; k < comm->nprocs; k++) begins[k] = begins[k - 1] + counts[k - 1];
-  std::vector<int> keys(begins.back() + counts.back());
-  MPI_Allgatherv(mine.data(), count, MPI_INT, keys.data(), counts.data(), begins.data(), MPI_INT,
-                 world);
+  const std::vector<int> keys = gather_on_all(mine, world);
   const int ngroups_everywhere = (int) keys.size() / (NKEY + 1);
   all = ngroups_everywhere * size;
   walled.assign(all, 0);
@@ -81,7 +76,6 @@ void MPMTies::begin(MPMBodyContact &of, const std::vector<double> &mass, int wid
 
   // where walls leave a motion that is no special one as it is, they also do nothing with one that
   // is there alone, as P_w is symmetric
-
   std::vector<char> is_free(n, 1), walled;
   if (has_walls) {
     std::vector<double> v(n), moved;
@@ -135,26 +129,16 @@ void MPMTies::find_products()
     for (const Entry &entry : columns[number])
       if (const auto found = at.find(entry.k); found != at.end())
         found->second.emplace_back(number, entry.value);
-  std::vector<double> mine;
+  std::vector<Eigen::Triplet<double>> mine;
   for (std::size_t row = 0; row < global.size(); row++) {
     if (!contact->owns(row / size)) continue;
     std::map<int, double> products;
     contact->visit_row(row, [&](int64_t k, double c) {
       for (const auto &[number, value] : at[k]) products[number] += c * value;
     });
-    for (const auto &[number, value] : products)
-      mine.insert(mine.end(), {(double) global[row], (double) number, value});
+    for (const auto &[number, value] : products) mine.emplace_back(global[row], number, value);
   }
-  std::vector<int> counts(comm->nprocs), begins(comm->nprocs, 0);
-  const int count = (int) mine.size();
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
-  for (int k = 1; k < comm->nprocs; k++) begins[k] = begins[k - 1] + counts[k - 1];
-  std::vector<double> list(begins.back() + counts.back());
-  MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, list.data(), counts.data(), begins.data(),
-                 MPI_DOUBLE, world);
-  S.clear();
-  for (std::size_t k = 0; k < list.size(); k += 3)
-    S.emplace_back((int) list[k], (int) list[k + 1], list[k + 2]);
+  S = gather_on_all(mine, world);
 }
 
 void MPMTies::factorize()

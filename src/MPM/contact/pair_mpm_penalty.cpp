@@ -9,6 +9,7 @@
 #include "contact/pair_mpm_penalty.h"
 
 #include "atom.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "comm.h"
@@ -35,8 +36,6 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int NOTHING = -1;    // field of an atom that is no point
-
-/* ---------------------------------------------------------------------- */
 
 void PairMPMPenalty::compute(int eflag, int vflag)
 {
@@ -132,10 +131,7 @@ void PairMPMPenalty::compute(int eflag, int vflag)
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
-/* ----------------------------------------------------------------------
-   once per neighbor list: of its pairs those of different fields, and whose radii are needed
-------------------------------------------------------------------------- */
-
+/** Once per neighbor list: of its pairs those of different fields, and whose radii are needed. */
 void PairMPMPenalty::find_pairs()
 {
   const int nlocal = atom->nlocal, nall = nlocal + atom->nghost, ntypes = atom->ntypes;
@@ -183,10 +179,7 @@ void PairMPMPenalty::find_pairs()
   if (look) warn_about_list(same, all);
 }
 
-/* ----------------------------------------------------------------------
-   lists full of points of the same body make all of LAMMPS slow
-------------------------------------------------------------------------- */
-
+/** Lists full of points of the same body make all of LAMMPS slow. */
 void PairMPMPenalty::warn_about_list(double same, double all)
 {
   look = false;
@@ -202,10 +195,7 @@ void PairMPMPenalty::warn_about_list(double same, double all)
       sum[0], sum[1]);
 }
 
-/* ----------------------------------------------------------------------
-   field of a local or ghost atom by its group; ghosts that are no points have radius 0
-------------------------------------------------------------------------- */
-
+/** Field of a local or ghost atom by its group; ghosts that are no points have radius 0. */
 int PairMPMPenalty::field_of(int i) const
 {
   if (i < atom->nlocal && atom->vfrac[i] == 0.0) return NOTHING;
@@ -214,10 +204,7 @@ int PairMPMPenalty::field_of(int i) const
   return NOTHING;
 }
 
-/* ----------------------------------------------------------------------
-   half the spacing of points of this volume (2d: area; a ring: volume over its circle)
-------------------------------------------------------------------------- */
-
+/** Half the spacing of points of this volume (2d: area; a ring: volume over its circle). */
 double PairMPMPenalty::initial_radius(int i) const
 {
   double V = atom->vfrac[i];
@@ -257,10 +244,8 @@ double PairMPMPenalty::effusivity_of(int i) const
   return sqrt(k * fix->material->density() * c.capacity);
 }
 
-/* ----------------------------------------------------------------------
-   radii change in each step, and so may effusivities; masses do not, but this is the only message
-------------------------------------------------------------------------- */
-
+/** Radii change in each step, and so may effusivities; masses do not, but this is the only message.
+ */
 int PairMPMPenalty::pack_forward_comm(int n, int *list, double *buf, int, int *)
 {
   int m = 0;
@@ -283,10 +268,7 @@ void PairMPMPenalty::unpack_forward_comm(int n, int first, double *buf)
   }
 }
 
-/* ----------------------------------------------------------------------
-   heat of ghosts
-------------------------------------------------------------------------- */
-
+/** Heat of ghosts. */
 int PairMPMPenalty::pack_reverse_comm(int n, int first, double *buf)
 {
   std::copy_n(heat.begin() + first, n, buf);
@@ -298,10 +280,7 @@ void PairMPMPenalty::unpack_reverse_comm(int n, int *list, double *buf)
   for (int k = 0; k < n; k++) heat[list[k]] += buf[k];
 }
 
-/* ----------------------------------------------------------------------
-   pair_style mpm/penalty keyword value ...
-------------------------------------------------------------------------- */
-
+/** pair_style mpm/penalty keyword value ... */
 Options MPMPenaltyOptions::declare()
 {
   using namespace option;
@@ -319,12 +298,7 @@ void PairMPMPenalty::settings(int narg, char **arg)
   read_options(lmp, options, narg, arg, 0);
 }
 
-/* ---------------------------------------------------------------------- */
-
-/* ----------------------------------------------------------------------
-   pair_coeff I J modulus keyword values ...
-------------------------------------------------------------------------- */
-
+/** pair_coeff I J modulus keyword values ... */
 Options MPMPenaltyCoeff::declare()
 {
   using namespace option;
@@ -341,10 +315,7 @@ Options MPMPenaltyCoeff::declare()
   return o;
 }
 
-/* ----------------------------------------------------------------------
-   which fields and types there are, and how large their points
-------------------------------------------------------------------------- */
-
+/** Which fields and types there are, and how large their points. */
 void PairMPMPenalty::init_style()
 {
   points = MPMPoints::get(atom);
@@ -407,10 +378,7 @@ void PairMPMPenalty::init_style()
   neighbor->add_request(this);
 }
 
-/* ----------------------------------------------------------------------
-   no cutoff, and no pairs in the neighbor list, for types that do not meet
-------------------------------------------------------------------------- */
-
+/** No cutoff, and no pairs in the neighbor list, for types that do not meet. */
 double PairMPMPenalty::init_one(int i, int j)
 {
   const Coeff &c = coeff_of(i, j);
@@ -428,13 +396,8 @@ double PairMPMPenalty::init_one(int i, int j)
     }
 
   // lists by collection make a single bin of a collection without a cutoff
-
   return i == j && neighbor->style == Neighbor::MULTI ? reach : 0.0;
 }
-
-/* ----------------------------------------------------------------------
-   restart
-------------------------------------------------------------------------- */
 
 void PairMPMPenalty::write_restart_settings(FILE *fp)
 {
@@ -447,12 +410,7 @@ void PairMPMPenalty::read_restart_settings(FILE *fp)
   MPI_Bcast(&growth, 1, MPI_DOUBLE, 0, world);
 }
 
-/* ---------------------------------------------------------------------- */
-
 double PairMPMPenalty::memory_usage()
 {
-  return MPMPair::memory_usage() +
-      (radius.capacity() + mass.capacity() + effusivity.capacity() + heat.capacity()) *
-      sizeof(double) +
-      near.capacity() * sizeof(int);
+  return MPMPair::memory_usage() + bytes_of(radius, mass, effusivity, heat, near);
 }

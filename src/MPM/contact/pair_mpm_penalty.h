@@ -20,7 +20,6 @@ PairStyle(mpm/penalty,PairMPMPenalty);
 
 #include <algorithm>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {

@@ -13,7 +13,7 @@
 
 #include "create/mpm_mesh_fields.h"
 #include "declare/option.h"
-#include "elements/mpm_thin_body.h"
+#include "elements/mpm_elements_options.h"
 #include "pointers.h"
 
 #include <array>

@@ -9,8 +9,9 @@
 #include "elements/element_forces.h"
 
 #include "atom.h"
+#include "base/mpm_image.h"
 #include "base/mpm_points.h"
-#include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_time_limit.h"
@@ -49,8 +50,6 @@ ElementForces::ElementForces(LAMMPS *lmp, const std::string &id, const MPMElemen
   if (thin) batch.thin.resize(BATCH);
 }
 
-ElementForces::~ElementForces() = default;
-
 void ElementForces::define(FixMPMMaterial *of_nodes)
 {
   material = of_nodes;
@@ -86,10 +85,6 @@ void ElementForces::define(FixMPMMaterial *of_nodes)
   }
 }
 
-/* ----------------------------------------------------------------------
-   the start: an element that is not deformed
-------------------------------------------------------------------------- */
-
 /** Gradients of the functions in the reference configuration; returns the volume of the point. */
 double ElementForces::gradients(const ElementRule &rule, int q, const double (*x)[3],
                                 double (*g)[3]) const
@@ -111,6 +106,28 @@ void ElementForces::check_frame(const double (*frame)[3], bigint label) const
                "gives them no direction there: give this part of the surface a mesh, or a part, of "
                "its own, with other axes",
                id, label);
+}
+
+void ElementForces::make_row(double *r, const MeshElement &element, const double *x, tagint low,
+                             bigint &rough)
+{
+  const double *const origin = x + 3 * (std::size_t) element.node[0];
+  r[0] = (double) element.label;
+  r[1] = (double) static_cast<int>(element.type);
+  const bool bends = body.bends(r);
+  double X[PATCH_NODES][3];
+  for (int m = 0; m < body.rule_of(r).nnode; m++) {
+    MathExtra::sub3(x + 3 * (std::size_t) element.node[m], origin, X[m]);
+    nearest_image(*domain, X[m]);
+    r[2 + m] = (double) (low + element.node[m]);
+    for (int d = 0; d < dim && !bends; d++) r[2 + body.maxnode + m * dim + d] = X[m][d];
+  }
+  if (!bends) return define_points(r, X, origin);
+  if (!body.define_bending(r, X, element.inside, rough))
+    error->one(FLERR,
+               "Fix mpm/elements {}: element {} of the mesh and the next one make an angle: "
+               "bending is for lines that are straight when this fix is defined",
+               id, (bigint) r[0]);
 }
 
 void ElementForces::define_points(double *r, const double (*X)[3], const double *first)
@@ -151,10 +168,7 @@ void ElementForces::set_initial_stress()
   });
 }
 
-/* ----------------------------------------------------------------------
-   visits all elements, as many at a time as fit into a batch
-------------------------------------------------------------------------- */
-
+/** Visits all elements, as many at a time as fit into a batch. */
 void ElementForces::for_batches(bool moved, const std::function<void(ElementBatch &)> &visit)
 {
   ElementBatch &w = batch;
@@ -179,12 +193,9 @@ void ElementForces::for_batches(bool moved, const std::function<void(ElementBatc
   flush();
 }
 
-/* ----------------------------------------------------------------------
-   kinematics of an element: F = sum_k x_k grad_0 N_k, or the stored F if the element has not moved.
-   F-bar (E.A. de Souza Neto et al., Int. J. Solids Struct. 33 (1996) 3277) replaces the J of each
-   point by the mean of J over the element, in 2d by scaling the plane
-------------------------------------------------------------------------- */
-
+/** Kinematics of an element: F = sum_k x_k grad_0 N_k, or the stored F if the element has not
+ *  moved. F-bar (E.A. de Souza Neto et al., Int. J. Solids Struct. 33 (1996) 3277) replaces the J
+ *  of each point by the mean of J over the element, in 2d by scaling the plane. */
 void ElementForces::load(ElementBatch &w, std::size_t e, bool moved) const
 {
   double *const r = body.row(e);
@@ -332,11 +343,8 @@ void ElementForces::find_stretches(ElementBatch &w)
           id, (bigint) row[0], update->ntimestep);
 }
 
-/* ----------------------------------------------------------------------
-   stress and history of the points in the batch. At the start of a run, nothing has moved since the
-   last evaluation of the stress, unless a command has moved points
-------------------------------------------------------------------------- */
-
+/** Stress and history of the points in the batch. At the start of a run, nothing has moved since
+ *  the last evaluation of the stress, unless a command has moved points. */
 void ElementForces::find_stress(ElementBatch &w, bool starting)
 {
   Batch &b = w.batch;
@@ -380,12 +388,10 @@ void ElementForces::map_gradients(ElementBatch &w)
     }
 }
 
-/* ----------------------------------------------------------------------
-   f_k = -sum_q V0 tau grad N_k. With F-bar the power of the stress is tau : (L + (mean - tr L)/dim
-   I) where mean is the rate of the mean of J. In the force, the mean of the pressure acts on the
-   gradients of the volume of the element and replaces the pressure of each point: force and strain
-   are consistent, and an elastic body keeps its energy
-------------------------------------------------------------------------- */
+// f_k = -sum_q V0 tau grad N_k. With F-bar the power of the stress is tau : (L + (mean - tr L)/dim
+// I) where mean is the rate of the mean of J. In the force, the mean of the pressure acts on the
+// gradients of the volume of the element and replaces the pressure of each point: force and strain
+// are consistent, and an elastic body keeps its energy
 
 /** Adds -f_k to f, in units of stress times volume over length. */
 void ElementForces::find_forces(const ElementBatch &w, int start, const ElementRule &rule,
@@ -452,6 +458,13 @@ void ElementForces::strain(bool starting, double *sums, int width)
     find_stress(w, starting);
     add_sums(w, sums, width);
   });
+  if (!bending) return;
+  const double scale = 1.0 / force->nktv2p;
+  body.for_bending(atom->x, [&](double, std::size_t e, int nnode, const double(*f)[3]) {
+    for (int m = 0; m < nnode; m++)
+      for (int d = 0; d < dim; d++)
+        sums[(std::size_t) body.nodes[e][m] * width + d] += scale * f[m][d];
+  });
 }
 
 bool ElementForces::try_motion(Trial &motion, const Use &use)
@@ -486,16 +499,32 @@ void ElementForces::add_stored_energy(double &sum)
     material->material->stored_energy(w.batch, energy);
     for (int p = 0; p < w.n; p++) sum += w.volume[p] * energy[p];
   });
+  if (bending)
+    body.for_bending(atom->x, [&](double stored, std::size_t, int, const double(*)[3]) {
+      sum += stored;
+    });
 }
 
-/* ----------------------------------------------------------------------
-   The square of the highest frequency of an element with lumped masses rho_0 V_0/n at its n nodes
-   and a stiffness of rho c^2 at most for any strain is n c^2 times the mean of the largest
-   eigenvalue of sum_k grad N_k x grad N_k at most, and that of the body is not larger. The lattice
-   can only lower it: its velocities are a part of those that nodes can have, and its lumped mass is
-   not less than theirs.
-------------------------------------------------------------------------- */
+/** By the theorem of Gerschgorin: its square is at most the largest sum of a row of the stiffness
+ *  over its mass. */
+void ElementForces::find_bending_frequency(int groupbit, const ElementNodes::IDs &ids)
+{
+  std::vector<double> sum(ids.n, 0.0), all(ids.n);
+  body.add_bending_sums(ids.low, sum);
+  MPI_Allreduce(sum.data(), all.data(), (int) ids.n, MPI_DOUBLE, MPI_SUM, world);
+  double largest = 0.0, square;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (atom->mask[i] & groupbit)
+      largest = std::max(largest, all[atom->tag[i] - ids.low] / atom->rmass[i]);
+  MPI_Allreduce(&largest, &square, 1, MPI_DOUBLE, MPI_MAX, world);
+  bending_frequency = sqrt(square * force->ftm2v / force->nktv2p);
+}
 
+/** The square of the highest frequency of an element with lumped masses rho_0 V_0/n at its n nodes
+ *  and a stiffness of rho c^2 at most for any strain is n c^2 times the mean of the largest
+ *  eigenvalue of sum_k grad N_k x grad N_k at most, and that of the body is not larger. The lattice
+ *  can only lower it: its velocities are a part of those that nodes can have, and its lumped mass
+ *  is not less than theirs. */
 double ElementForces::stable_dt(tagint &tag, double &speed)
 {
   double smallest = std::numeric_limits<double>::max(), c[BATCH];

@@ -9,6 +9,7 @@
 #ifndef LMP_ELEMENT_FORCES_H
 #define LMP_ELEMENT_FORCES_H
 
+#include "elements/element_nodes.h"
 #include "elements/mpm_elements_options.h"
 #include "material/plane_stress.h"
 #include "mesh/element_body.h"
@@ -47,17 +48,19 @@ class ElementForces : protected Pointers, private MPMElementsOptions {
  public:
   /** id: of the fix, for messages. */
   ElementForces(LAMMPS *, const std::string &id, const MPMElementsOptions &, MPM_NS::ElementBody &);
-  ~ElementForces() override;
 
   /** Length of the smallest element, for artificial viscosity, and volume of the elements. */
   double shortest = std::numeric_limits<double>::max(), volume = 0.0;
+  /** Bound of the largest frequency of free nodes by bending. */
+  double bending_frequency = 0.0;
 
   /** Sets the material of the nodes, and the stiffness of bending; stops with an error if it cannot
    *  be that of a surface or line. */
   void define(class FixMPMMaterial *);
-  /** Fills the points of a row that is not deformed, from the positions X of its nodes, relative to
-   *  the position of the first one. */
-  void define_points(double *row, const double (*X)[3], const double *first);
+  /** Fills the row of an element that is not deformed. x: positions of all nodes of the mesh; low:
+   *  ID of the first one; rough: counts triangles that know too few nodes around them. */
+  void make_row(double *row, const MPM_NS::MeshElement &, const double *x, tagint low,
+                bigint &rough);
   /** The stress without motion, of an equation of state. */
   void set_initial_stress();
 
@@ -81,8 +84,10 @@ class ElementForces : protected Pointers, private MPMElementsOptions {
 
   /** Adds the energy stored by the elements of this rank [pressure * volume]. */
   void add_stored_energy(double &sum);
-  /** Smallest 2/omega with a bound of the highest frequency omega of the elements of this rank. tag:
-   *  a node of the limiting element, 0: there is none; speed: its wave speed. */
+  /** Finds bending_frequency, of nodes in this group. Collective. */
+  void find_bending_frequency(int groupbit, const ElementNodes::IDs &);
+  /** Smallest 2/omega with a bound of the highest frequency omega of the elements of this rank.
+   *  tag: a node of the limiting element, 0: there is none; speed: its wave speed. */
   double stable_dt(tagint &tag, double &speed);
   double memory_usage() const { return (double) batch.history.capacity() * sizeof(double); }
 
@@ -95,6 +100,7 @@ class ElementForces : protected Pointers, private MPMElementsOptions {
   ElementBatch batch;
   Trial *trial = nullptr;    // null: the nodes are where they are
 
+  void define_points(double *row, const double (*X)[3], const double *first);
   double gradients(const MPM_NS::ElementRule &, int q, const double (*x)[3], double (*g)[3]) const;
   void check_frame(const double (*frame)[3], bigint label) const;
   void find_frame(const double (*g)[3], double (*frame)[3]) const;
@@ -109,6 +115,36 @@ class ElementForces : protected Pointers, private MPMElementsOptions {
   void find_forces(const ElementBatch &, int start, const MPM_NS::ElementRule &,
                    double (*f)[3]) const;
   void add_sums(ElementBatch &, double *sums, int width) const;
+};
+
+/** Derivatives of the forces on the nodes of each element by the displacements of its nodes, of the
+ *  elements and of the pressure on their surface: central differences, one component of one node at
+ *  a time, in all elements at once. Vectors are [local and ghost][3]. */
+class ElementTangents {
+ public:
+  ElementTangents(const MPM_NS::ElementBody &body, ElementForces &forces,
+                  const class ElementSurface &surface) :
+      body(body),
+      forces(forces), surface(surface)
+  {
+  }
+
+  /** Finds them after a motion. Returns the sum of the largest one of each element, times the
+   *  length of the shortest element. */
+  double find(const double *motion);
+  /** Adds the change of the forces by a motion. */
+  void add_change(const double *motion, double *to) const;
+  /** Adds the stiffness of each node along the axes against its own motion along axis b. */
+  void add_stiffness(int b, double *to) const;
+  /** Largest difference of opposite derivatives, relative to the largest derivative. */
+  double asymmetry() const;
+
+ private:
+  const MPM_NS::ElementBody &body;
+  ElementForces &forces;
+  const ElementSurface &surface;
+  int size = 0;
+  std::vector<double> tangents;    // [element][size][size], size = maxnode dim
 };
 
 }    // namespace LAMMPS_NS

@@ -10,11 +10,12 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "error.h"
 #include "force.h"
 #include "math/matrix.h"
 #include "math_extra.h"
 #include "mesh/curved_surface.h"
-#include "mesh/triangle_gap.h"
+#include "mesh/face_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,6 +46,29 @@ void area_vector(int dim, const double *const at[3], double *normal)
 ElementSurface::ElementSurface(LAMMPS *lmp, const ElementBody &body, const SurfaceKind &kind) :
     Pointers(lmp), kind(kind), dim(body.dim), body(body)
 {
+}
+
+void ElementSurface::set_pressure(MPMElementsPressure *who, bool closed, const std::string &id)
+{
+  if (body.along != dim - 1)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/elements {} has no surface for a pressure: use the keyword thickness", id);
+  if (pressure)
+    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/elements {} has more than one fix mpm/airbag",
+               id);
+  if (!kind.oriented)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/elements {}: its surface has no two sides: more than two elements meet at an "
+        "edge, or it is a Moebius strip",
+        id);
+  if (closed && !kind.closed)
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/elements {}: its surface has a rim, and encloses no gas: use a closed mesh, whose "
+        "elements share their nodes, or fix mpm/airbag pressure",
+        id);
+  pressure = who;
 }
 
 template <class Visit> void ElementSurface::for_faces(Visit visit) const
@@ -89,12 +113,9 @@ double ElementSurface::widest_gap() const
   return all;
 }
 
-/* ----------------------------------------------------------------------
-   p times the gradient of the enclosed volume: a third (in 2d half) of the area for each node, and
-   the gradient of the volume between the triangles and a curved surface, so that the work is p dV
-   exactly
-------------------------------------------------------------------------- */
-
+/** p times the gradient of the enclosed volume: a third (in 2d half) of the area for each node, and
+ *  the gradient of the volume between the triangles and a curved surface, so that the work is p dV
+ *  exactly. */
 void ElementSurface::add_pressure(bool starting, double *sums, int width)
 {
   double mine[2] = {0.0, 0.0}, all[2];
@@ -131,12 +152,9 @@ void ElementSurface::add_pressure(bool starting, double *sums, int width)
   });
 }
 
-/* ----------------------------------------------------------------------
-   The gas in a closed surface is one spring between all of its nodes, of the stiffness k = -dp/dV
-   along the gradient g of the volume: omega^2 = k sum_i g_i^2/m_i. For a thin bag, the limit
-   follows from the size of the bag, whatever its mesh.
-------------------------------------------------------------------------- */
-
+/** The gas in a closed surface is one spring between all of its nodes, of the stiffness k = -dp/dV
+ *  along the gradient g of the volume: omega^2 = k sum_i g_i^2/m_i. For a thin bag, the limit
+ *  follows from the size of the bag, whatever its mesh. */
 double ElementSurface::volume_gradient(double *gradient) const
 {
   double volume = 0.0;
@@ -170,77 +188,69 @@ double ElementSurface::gas_frequency(double volume, const double *gradient, int 
   return sqrt(square * force->ftm2v / force->nktv2p);
 }
 
-/* ---------------------------------------------------------------------- */
-
-/** Positions of nodes relative to the first one, after the motion or before. */
-void ElementSurface::find_moved(std::size_t e, const double *motion, double (*x)[3]) const
+/** Calls visit(weight, element, corners [3], x) for triangles as for_faces() does. x: positions of
+ *  the nodes of the element relative to the first one, after the motion or before. */
+template <class Visit>
+void ElementSurface::for_moved_faces(const double *motion, const Visit &visit) const
 {
-  const auto first = (std::size_t) body.nodes[e][0];
-  for (int m = 0; m < body.nodes_of(body.row(e)); m++)
-    for (int d = 0; d < 3; d++) {
-      const auto here = (std::size_t) body.nodes[e][m];
-      x[m][d] = atom->x[here][d] - atom->x[first][d];
-      if (motion && d < dim) x[m][d] += motion[3 * here + d] - motion[3 * first + d];
-    }
+  for (std::size_t e = 0; e < body.nodes.size(); e++) {
+    const auto first = (std::size_t) body.nodes[e][0];
+    const int nnode = body.nodes_of(body.row(e));
+    double x[MAX_ELEMENT_NODES][3] = {{0.0}};
+    for (int m = 0; m < nnode; m++)
+      for (int d = 0; d < 3; d++) {
+        const auto here = (std::size_t) body.nodes[e][m];
+        x[m][d] = atom->x[here][d] - atom->x[first][d];
+        if (motion && d < dim) x[m][d] += motion[3 * here + d] - motion[3 * first + d];
+      }
+    for (int part = 0; part < (nnode == 4 ? 4 : 1); part++)
+      visit(nnode == 4 ? 0.5 : 1.0, e, SPLIT[part], x);
+  }
 }
 
 /** Adds to sent, times a sign, the pressure of this step on the surfaces as they are after the
  *  motion or before. */
 void ElementSurface::add_pressure_after(const double *motion, double sign, double *to) const
 {
-  const double factor = sign * side * pressure_before / (force->nktv2p * dim);
-  for (std::size_t e = 0; e < body.nodes.size(); e++) {
-    const bool four = body.nodes_of(body.row(e)) == 4;
-    double x[MAX_ELEMENT_NODES][3] = {{0.0}}, normal[3];
-    find_moved(e, motion, x);
-    for (int part = 0; part < (four ? 4 : 1); part++) {
-      const double *at[3];
-      for (int m = 0; m < 3; m++) at[m] = x[SPLIT[part][m]];
-      area_vector(dim, at, normal);
-      for (int m = 0; m < dim; m++)
-        for (int d = 0; d < dim; d++)
-          to[3 * (std::size_t) body.nodes[e][SPLIT[part][m]] + d] +=
-              (four ? 0.5 : 1.0) * factor * normal[d];
-    }
-  }
+  for_moved_faces(motion, [&](double weight, std::size_t e, const int *corner, double(*x)[3]) {
+    const double factor = weight * (sign * side * pressure_before / (force->nktv2p * dim));
+    const double *const at[3] = {x[corner[0]], x[corner[1]], x[corner[2]]};
+    double normal[3];
+    area_vector(dim, at, normal);
+    for (int m = 0; m < dim; m++)
+      for (int d = 0; d < dim; d++)
+        to[3 * (std::size_t) body.nodes[e][corner[m]] + d] += factor * normal[d];
+  });
 }
 
-/** An enclosed volume has a symmetric second
- *  derivative, so each face gets the symmetric part. */
+/** An enclosed volume has a symmetric second derivative, so each face gets the symmetric part. */
 void ElementSurface::differentiate_pressure(const double *motion, double size_of_element,
                                             double *tangents) const
 {
   const int size = body.maxnode * dim;
-  const double factor = side * pressure_before / (force->nktv2p * dim);
-  for (std::size_t e = 0; e < body.nodes.size(); e++) {
-    const bool four = body.nodes_of(body.row(e)) == 4;
-    double x[MAX_ELEMENT_NODES][3] = {{0.0}};
-    find_moved(e, motion, x);
-    for (int part = 0; part < (four ? 4 : 1); part++) {
-      const double *at[3];
-      double high[3], low[3], K[9][9];
-      for (int m = 0; m < 3; m++) at[m] = x[SPLIT[part][m]];
-      for (int column = 0; column < dim * dim; column++) {
-        // the area is linear, or bilinear, in the positions of nodes, so that differences of any
-        // size are exact
-        double &place = x[SPLIT[part][column / dim]][column % dim];
-        const double value = place;
-        place = value + 0.5 * size_of_element;
-        area_vector(dim, at, high);
-        place = value - 0.5 * size_of_element;
-        area_vector(dim, at, low);
-        place = value;
-        for (int row = 0; row < dim * dim; row++)
-          K[row][column] =
-              (four ? 0.5 : 1.0) * factor * (high[row % dim] - low[row % dim]) / size_of_element;
-      }
-      const auto local = [&](int k) {
-        return dim * SPLIT[part][k / dim] + k % dim;
-      };
-      for (int column = 0; column < dim * dim; column++)
-        for (int row = 0; row < dim * dim; row++)
-          tangents[e * size * size + (std::size_t) size * local(column) + local(row)] +=
-              kind.closed ? 0.5 * (K[row][column] + K[column][row]) : K[row][column];
+  for_moved_faces(motion, [&](double weight, std::size_t e, const int *corner, double(*x)[3]) {
+    const double factor = weight * (side * pressure_before / (force->nktv2p * dim));
+    const double *const at[3] = {x[corner[0]], x[corner[1]], x[corner[2]]};
+    double high[3], low[3], K[9][9];
+    for (int column = 0; column < dim * dim; column++) {
+      // the area is linear, or bilinear, in the positions of nodes, so that differences of any
+      // size are exact
+      double &place = x[corner[column / dim]][column % dim];
+      const double value = place;
+      place = value + 0.5 * size_of_element;
+      area_vector(dim, at, high);
+      place = value - 0.5 * size_of_element;
+      area_vector(dim, at, low);
+      place = value;
+      for (int row = 0; row < dim * dim; row++)
+        K[row][column] = factor * (high[row % dim] - low[row % dim]) / size_of_element;
     }
-  }
+    const auto local = [&](int k) {
+      return dim * corner[k / dim] + k % dim;
+    };
+    for (int column = 0; column < dim * dim; column++)
+      for (int row = 0; row < dim * dim; row++)
+        tangents[e * size * size + (std::size_t) size * local(column) + local(row)] +=
+            kind.closed ? 0.5 * (K[row][column] + K[column][row]) : K[row][column];
+  });
 }

@@ -41,6 +41,10 @@ class ElementSurface : protected Pointers {
   /** Work that the pressure in a closed surface has done so far. */
   double work = 0.0;
 
+  /** Sets the pressure. Stops with an error of the fix with this ID if the surface has no sides, or
+   *  if it must enclose a volume and does not. */
+  void set_pressure(MPMElementsPressure *, bool closed, const std::string &id);
+
   /** Largest distance of a place on the surface or line from the nodes around it, over all ranks.
    *  Collective. */
   double widest_gap() const;
@@ -73,7 +77,7 @@ class ElementSurface : protected Pointers {
   double volume_before = 0.0, pressure_before = 0.0;    // of a closed surface
 
   template <class Visit> void for_faces(Visit) const;
-  void find_moved(std::size_t e, const double *motion, double (*x)[3]) const;
+  template <class Visit> void for_moved_faces(const double *motion, const Visit &visit) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -27,10 +27,7 @@ using namespace MPM_NS;
 // parts
 static constexpr double PART = 0.003, MOST_PARTS = 1.0e5;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/airbag ELEMENTS keyword values ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/airbag ELEMENTS keyword values ... */
 Options MPMAirbagOptions::declare()
 {
   using namespace option;
@@ -132,10 +129,7 @@ void FixMPMAirbag::init()
   for (auto &v : inflow) find_variable(lmp, v, "fix mpm/airbag inflow");
 }
 
-/* ----------------------------------------------------------------------
-   once in each step, before forces
-------------------------------------------------------------------------- */
-
+/** Once in each step, before forces. */
 double FixMPMAirbag::on_surface(double its_volume, double its_area, bool starting)
 {
   volume = its_volume;
@@ -175,10 +169,7 @@ double FixMPMAirbag::stiffness(double its_volume) const
   return gamma * (filled ? there.pressure() : p) / its_volume;
 }
 
-/* ----------------------------------------------------------------------
-   gas that comes in and goes out in a step, by the midpoint rule in one or more parts of it
-------------------------------------------------------------------------- */
-
+/** Gas that comes in and goes out in a step, by the midpoint rule in one or more parts of it. */
 void FixMPMAirbag::flow(double dt)
 {
   if (!has_inflow && vent == 0.0) return;
@@ -229,33 +220,20 @@ void FixMPMAirbag::flow(double dt)
   }
 }
 
-/* ----------------------------------------------------------------------
-   pressure, volume, area, mass, temperature, mass that has come and gone, energy
-------------------------------------------------------------------------- */
-
+/** Pressure, volume, area, mass, temperature, mass that has come and gone, energy. */
 double FixMPMAirbag::compute_vector(int k)
 {
-  switch (k) {
-    case 0:
-      return over + outside;
-    case 1:
-      return volume;
-    case 2:
-      return area;
-    case 3:
-      return has_gas && temperature > 0.0 ? gas.mass : 0.0;
-    case 4:
-      return has_gas && temperature > 0.0 ? gas.temperature : 0.0;
-    case 5:
-      return in;
-    case 6:
-      return out;
-    default:
-      return has_gas && filled ? gas.energy() / force->nktv2p : 0.0;
-  }
+  const bool known = has_gas && temperature > 0.0;
+  const double list[] = {over + outside,
+                         volume,
+                         area,
+                         known ? gas.mass : 0.0,
+                         known ? gas.temperature : 0.0,
+                         in,
+                         out,
+                         has_gas && filled ? gas.energy() / force->nktv2p : 0.0};
+  return list[k];
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMAirbag::write_restart(FILE *fp)
 {

@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "base/mpm_image.h"
 #include "base/mpm_input.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "comm.h"
@@ -19,12 +20,10 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
 #include "force.h"
-#include "group.h"
 #include "material/material.h"
 #include "math_extra.h"
 #include "mesh/curved_surface.h"
 #include "mesh/rims.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "pair.h"
 #include "step/mpm_grains.h"
@@ -33,7 +32,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -41,18 +39,10 @@ using namespace MPM_NS;
 // bending: share of rough triangles from which on a warning is due
 static constexpr double MANY_ROUGH = 0.1;
 
-// number of nodes from which the owner of an element is chosen
-static int number_of_corners(const MeshElement &element)
-{
-  return element.type == ElementType::PATCH ? 3 : element_nodes(element.type);
-}
-
-/* ----------------------------------------------------------------------
-   fix ID group mpm/elements FILE keyword value ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/elements FILE keyword value ... */
 FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
-    FixMPMState(lmp, narg, arg), dim(domain->dimension), points(MPMPoints::get(atom))
+    FixMPMState(lmp, narg, arg), dim(domain->dimension), nodes(lmp, *this),
+    points(MPMPoints::get(atom))
 {
   Options options = declare(dim);
   read_options(lmp, options, narg, arg, 3);
@@ -95,14 +85,13 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
                "one integration point have no other volume to average with");
 
   // ghosts are found by their IDs
-
   if (atom->map_style == Atom::MAP_NONE) {
     atom->map_user = Atom::MAP_YES;
     atom->map_init();
     atom->map_set();
   }
 
-  material = find_material();
+  material = nodes.find_material();
   variables = names_of_history();
   body->set_history(material->nhistory);
   width = 18 + body->nhistory;
@@ -110,42 +99,12 @@ FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
   surface = std::make_unique<ElementSurface>(lmp, *body, kind);
   const MPMElementsOptions &given = *this;
   internal = std::make_unique<ElementForces>(lmp, id, given, *body);
+  tangents = std::make_unique<ElementTangents>(*body, *internal, *surface);
   internal->define(material);
   state.declare(first, "mpm/elements:first");
   state.declare(count, "mpm/elements:count");
   make_elements(mesh);
   maxexchange = 1 + max_of_node * body->stride;
-}
-
-FixMPMElements::~FixMPMElements() = default;
-
-/* ----------------------------------------------------------------------
-   the material of the nodes must be that of the elements
-------------------------------------------------------------------------- */
-
-FixMPMMaterial *FixMPMElements::find_material() const
-{
-  const auto all = modify->get_fix_by_style("^mpm/material$");
-  int mine = -1, index;
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int k = 0; k < (int) all.size() && (atom->mask[i] & groupbit); k++)
-      if (atom->mask[i] & all[k]->groupbit) mine = k;
-  MPI_Allreduce(&mine, &index, 1, MPI_INT, MPI_MAX, world);
-  if (index < 0)
-    error->all(FLERR,
-               "Fix mpm/elements {}: the points of group {} have no material: define a fix "
-               "mpm/material for them before",
-               id, group->names[igroup]);
-  bigint other = 0, others;
-  for (int i = 0; i < atom->nlocal; i++)
-    other += (atom->mask[i] & groupbit) && !(atom->mask[i] & all[index]->groupbit);
-  MPI_Allreduce(&other, &others, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (others)
-    error->all(FLERR,
-               "Fix mpm/elements {}: the points of group {} must have one material: use a "
-               "fix mpm/elements and a mesh for each",
-               id, group->names[igroup]);
-  return dynamic_cast<FixMPMMaterial *>(all[index]);
 }
 
 std::string FixMPMElements::names_of_history() const
@@ -155,66 +114,22 @@ std::string FixMPMElements::names_of_history() const
   return text.empty() ? " none" : text;
 }
 
-/* ---------------------------------------------------------------------- */
-
-FixMPMElements::IDs FixMPMElements::count_nodes() const
-{
-  IDs mine = {0, MAXTAGINT, 0}, all;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    mine.n++;
-    mine.low = std::min(mine.low, atom->tag[i]);
-    mine.high = std::max(mine.high, atom->tag[i]);
-  }
-  MPI_Allreduce(&mine.n, &all.n, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  MPI_Allreduce(&mine.low, &all.low, 1, MPI_LMP_TAGINT, MPI_MIN, world);
-  MPI_Allreduce(&mine.high, &all.high, 1, MPI_LMP_TAGINT, MPI_MAX, world);
-  return all;
-}
-
-/* ----------------------------------------------------------------------
-   elements from the mesh, whose nodes are the points of the group in order of their IDs; the
-   reference configuration is where these are now
-------------------------------------------------------------------------- */
-
+/** Elements from the mesh, whose nodes are the points of the group in order of their IDs; the
+ *  reference configuration is where these are now. */
 void FixMPMElements::make_elements(const Mesh &mesh)
 {
-  const auto nnodes = (bigint) mesh.nodes.size();
-  ids = count_nodes();
-  if (ids.n != nnodes || (bigint) ids.high - ids.low + 1 != nnodes)
-    error->all(FLERR,
-               "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, the mesh has "
-               "{} nodes: its group must be the points that one create_points ... mesh made from "
-               "the same mesh",
-               id, group->names[igroup], ids.n, ids.n ? ids.low : 0, ids.high, nnodes);
-
-  std::vector<double> mine(3 * nnodes, 0.0), x(3 * nnodes);
-  std::vector<int> local(nnodes, -1);
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
-    const tagint k = atom->tag[i] - ids.low;
-    local[k] = i;
-    for (int d = 0; d < 3; d++) mine[3 * k + d] = atom->x[i][d];
-  }
-  MPI_Allreduce(mine.data(), x.data(), (int) (3 * nnodes), MPI_DOUBLE, MPI_SUM, world);
-
-  // each element belongs to the node that owns fewest so far
-
-  std::vector<int> owned(nnodes, 0);
+  std::vector<double> x;
+  std::vector<int> local;
+  nodes.define((bigint) mesh.nodes.size(), x, local);
+  const auto owners = ElementBody::choose_owners(mesh, max_of_node);
   std::vector<std::pair<int, int>> here;    // (atom, element)
-  for (int e = 0; e < (int) mesh.elements.size(); e++) {
-    const auto &element = mesh.elements[e];
-    int owner = element.node[0];
-    for (int k = 1; k < number_of_corners(element); k++)
-      if (owned[element.node[k]] < owned[owner]) owner = element.node[k];
-    max_of_node = std::max(max_of_node, ++owned[owner]);
-    if (local[owner] >= 0) here.emplace_back(local[owner], e);
-  }
+  for (int e = 0; e < (int) owners.size(); e++)
+    if (local[owners[e]] >= 0) here.emplace_back(local[owners[e]], e);
   std::sort(here.begin(), here.end());
   body->pool.assign(here.size() * body->stride, 0.0);
   bigint rough = 0, all_rough;
   for (std::size_t k = 0; k < here.size(); k++)
-    make_row(k, mesh.elements[here[k].second], x.data(), rough);
+    internal->make_row(body->row(k), mesh.elements[here[k].second], x.data(), nodes.ids.low, rough);
   if (curved) {
     const auto swells = curved_areas(dim, mesh, [&](int a, int b, double *to) {
       MathExtra::sub3(&x[3 * (std::size_t) b], &x[3 * (std::size_t) a], to);
@@ -235,61 +150,16 @@ void FixMPMElements::make_elements(const Mesh &mesh)
                    id, all_rough, nelements);
 
   internal->set_initial_stress();
-  check_volume();
+  nodes.check_volume(internal->volume);
 
   keep_arrays();
   for (std::size_t k = 0; k < here.size(); k++)
     if (count[here[k].first]++ == 0.0) first[here[k].first] = (double) k;
 }
 
-/** Fills the row of an element. x: positions of all nodes of the mesh. */
-void FixMPMElements::make_row(std::size_t row, const MeshElement &element, const double *x,
-                              bigint &rough)
-{
-  double *const r = body->row(row);
-  r[0] = (double) element.label;
-  r[1] = (double) static_cast<int>(element.type);
-  double X[PATCH_NODES][3];
-  for (int m = 0; m < body->rule_of(r).nnode; m++) {
-    MathExtra::sub3(x + 3 * (std::size_t) element.node[m], x + 3 * (std::size_t) element.node[0],
-                    X[m]);
-    nearest_image(*domain, X[m]);
-    r[2 + m] = (double) (ids.low + element.node[m]);
-    for (int d = 0; d < dim && !body->bends(r); d++) r[2 + body->maxnode + m * dim + d] = X[m][d];
-  }
-  if (!body->bends(r)) {
-    internal->define_points(r, X, x + 3 * (std::size_t) element.node[0]);
-  } else if (!body->define_bending(r, X, element.inside, rough)) {
-    error->one(
-        FLERR,
-        "Fix mpm/elements {}: element {} of the mesh and the next one make an angle: bending "
-        "is for lines that are straight when this fix is defined",
-        id, (bigint) r[0]);
-  }
-}
-
-/** The elements must have the volume of their nodes. */
-void FixMPMElements::check_volume() const
-{
-  double volume[2] = {internal->volume, 0.0}, volumes[2];
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit) volume[1] += atom->vfrac[i];
-  MPI_Allreduce(volume, volumes, 2, MPI_DOUBLE, MPI_SUM, world);
-  if (!modify->nfix_restart_peratom && !(fabs(volumes[0] - volumes[1]) <= 1.0e-6 * volumes[0]))
-    error->all(
-        FLERR,
-        "Fix mpm/elements {}: the elements have a volume of {:.8g}, their nodes of {:.8g}: "
-        "points that create_points ... mesh made must not be deformed before, and thickness or "
-        "section must be the same",
-        id, volumes[0], volumes[1]);
-}
-
-/* ---------------------------------------------------------------------- */
-
 void FixMPMElements::init()
 {
-  check_nodes();
-  check_fields();
+  nodes.check();
   has_lattice = field_of_nodes() != nullptr;
   warned_slack = false;
   surface->pressure = nullptr;
@@ -297,8 +167,7 @@ void FixMPMElements::init()
   comm_forward = 3;
 
   // the fix mpm/material at the time of definition may have been removed or redefined since
-
-  material = find_material();
+  material = nodes.find_material();
   if (names_of_history() != variables)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/elements {}: its elements have the history variables{}, but the present "
@@ -307,100 +176,22 @@ void FixMPMElements::init()
                id, variables, material->id, names_of_history());
 
   internal->define(material);
-  if (bending) bending_frequency = largest_bending_frequency();
+  if (bending) internal->find_bending_frequency(groupbit, nodes.ids);
 
   // nodes of elements may be ghosts; elements that have stretched since need comm_modify
-
   // one that is less than that of a pair style is a warning of LAMMPS
   const double extent = largest_extent();
   if (!force->pair || extent > force->pair->cutforce + neighbor->skin)
     comm->cutghostuser = std::max(comm->cutghostuser, extent);
 }
 
-/* ----------------------------------------------------------------------
-   the nodes must be those of the definition, and of no other mesh, whose forces would be added
-------------------------------------------------------------------------- */
-
-void FixMPMElements::check_nodes() const
-{
-  const IDs now = count_nodes();
-  if (now.n != ids.n || now.low != ids.low || now.high != ids.high)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/elements {}: group {} has {} atoms with IDs from {} to {}, but had {} from {} "
-        "on: nodes of elements must not be added, deleted or renumbered; unfix it before",
-        id, group->names[igroup], now.n, now.n ? now.low : 0, now.high, ids.n, ids.low);
-
-  for (const auto *other : modify->get_fix_by_style("^mpm/elements$"))
-    if (other != this && has_points_of(other->groupbit))
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/elements {} and {} have points in common, which would feel the forces of "
-                 "both: give them disjoint groups, or unfix one of them",
-                 id, other->id);
-}
-
-bool FixMPMElements::has_points_of(int other_groupbit) const
-{
-  int mine = 0, any;
-  for (int i = 0; i < atom->nlocal; i++)
-    mine |= (atom->mask[i] & groupbit) && (atom->mask[i] & other_groupbit);
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  return any != 0;
-}
-
-const char *FixMPMElements::field_of_nodes() const
-{
-  for (const auto *field : MPMField::all(lmp))
-    if (has_points_of(field->fix.groupbit)) return field->id();
-  return nullptr;
-}
-
-/* ---------------------------------------------------------------------- */
-
 std::vector<NearNodes::Edge> FixMPMElements::edges() const
 {
-  return gather(body->edges(ids.low));
+  return gather_on_all(body->edges(nodes.ids.low), world);
 }
 
-/** Gathers the values of all ranks on all ranks, in the order of ranks. */
-template <class T> std::vector<T> FixMPMElements::gather(const std::vector<T> &mine) const
-{
-  const int size = (int) (mine.size() * sizeof(T));
-  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
-  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
-  for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
-  std::vector<T> all((starts.back() + sizes.back()) / sizeof(T));
-  MPI_Allgatherv(mine.data(), size, MPI_BYTE, all.data(), sizes.data(), starts.data(), MPI_BYTE,
-                 world);
-  return all;
-}
-
-void FixMPMElements::check_fields() const
-{
-  for (const auto *field : MPMField::all(lmp)) {
-    if (!has_points_of(field->fix.groupbit)) continue;
-    const auto refuse = [&](bool broken, const std::string &what, const std::string &why) {
-      if (broken)
-        error->all(FLERR, "Fix mpm {} {} fix mpm/elements {}{}", field->id(), what, id, why);
-    };
-    const auto &given = field->options;
-    refuse(given.locking != MPMFieldOptions::NO_CURE, "locking is not for nodes of elements: use",
-           " locking fbar");
-    refuse(given.bad == MPMFieldOptions::DELETE || given.delete_failed,
-           "bad delete and failed delete cannot be used with",
-           ", whose nodes must not be deleted: give them a fix mpm of their own");
-    refuse(given.axisymmetric, "axisymmetric cannot be used with",
-           ", whose elements are of plane strain: use create_points elements with shape cpdi2");
-    refuse(given.every > 1, "every cannot be used with",
-           ", which strains elements in each step: use every 1");
-  }
-}
-
-/* ----------------------------------------------------------------------
-   an upper bound for the distance of nodes of an element, with room for more deformation: the
-   Frobenius norm of F is sqrt(dim) without deformation
-------------------------------------------------------------------------- */
-
+/** An upper bound for the distance of nodes of an element, with room for more deformation: the
+ *  Frobenius norm of F is sqrt(dim) without deformation. */
 double FixMPMElements::largest_extent() const
 {
   const auto extents = body->extents();
@@ -414,18 +205,14 @@ double FixMPMElements::largest_extent() const
   return all;
 }
 
-/* ----------------------------------------------------------------------
-   sorts rows in the order of atoms, and finds their nodes
-------------------------------------------------------------------------- */
-
+/** Sorts rows in the order of atoms, and finds their nodes. */
 void FixMPMElements::find_nodes()
 {
-  const int nlocal = atom->nlocal;
   std::vector<double> sorted;
   sorted.reserve(body->pool.size());
   body->nodes.clear();
   body->owner.clear();
-  for (int i = 0; i < nlocal; i++) {
+  for (int i = 0; i < atom->nlocal; i++) {
     if (count[i] == 0) continue;
     const double *r = body->row(first[i]);
     first[i] = (double) body->nodes.size();
@@ -450,14 +237,10 @@ void FixMPMElements::find_nodes()
   body->pool.swap(sorted);
 }
 
-/* ----------------------------------------------------------------------
-   forces of the elements on their nodes, and means of their state for output
-------------------------------------------------------------------------- */
-
+/** Forces of the elements on their nodes, and means of their state for output. */
 void FixMPMElements::compute(bool starting)
 {
-  const int nlocal = atom->nlocal, nall = nlocal + atom->nghost;
-  sums.assign((std::size_t) nall * width, 0.0);
+  sums.assign(((std::size_t) atom->nlocal + atom->nghost) * width, 0.0);
   const auto strain = [&]() {
     internal->strain(starting, sums.data(), width);
   };
@@ -465,14 +248,6 @@ void FixMPMElements::compute(bool starting)
     strain();
   else
     keep_spent(strain);
-  if (bending) {
-    const double scale = 1.0 / force->nktv2p;
-    body->for_bending(atom->x, [&](double, std::size_t e, int nnode, const double(*f)[3]) {
-      for (int m = 0; m < nnode; m++)
-        for (int d = 0; d < dim; d++)
-          sums[(std::size_t) body->nodes[e][m] * width + d] += scale * f[m][d];
-    });
-  }
   if (surface->pressure) surface->add_pressure(starting, sums.data(), width);
   comm->reverse_comm(this);
 
@@ -482,11 +257,10 @@ void FixMPMElements::compute(bool starting)
 /** Adds forces of elements to those of their nodes, which show means of their state. */
 void FixMPMElements::give_means_to_nodes()
 {
-  const int nlocal = atom->nlocal;
   clear_points(force_on, atom, 3);
   double **const f = atom->f;
-  for (int i = 0; i < nlocal; i++) {
-    if (!(atom->mask[i] & groupbit)) continue;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!nodes.has(i)) continue;
     const double *const s = &sums[(std::size_t) i * width], inverse = 1.0 / atom->vfrac[i];
     for (int d = 0; d < dim; d++) {
       force_on[3 * (std::size_t) i + d] = s[d];
@@ -506,62 +280,18 @@ void FixMPMElements::give_means_to_nodes()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<ElementBody::NumberedFace> FixMPMElements::all_faces() const
 {
   std::vector<ElementBody::NumberedFace> mine;
   for (int i = 0; i < atom->nlocal; i++)    // other rows may be from before a restart
     for (int k = 0; k < count[i]; k++)
-      body->add_numbered_faces((std::size_t) first[i] + k, ids.low, mine);
-  return gather(mine);
+      body->add_numbered_faces((std::size_t) first[i] + k, nodes.ids.low, mine);
+  return gather_on_all(mine, world);
 }
 
-void FixMPMElements::set_pressure(MPMElementsPressure *who, bool closed)
-{
-  if (body->along != dim - 1)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/elements {} has no surface for a pressure: use the keyword thickness", id);
-  if (surface->pressure)
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/elements {} has more than one fix mpm/airbag",
-               id);
-  if (!surface->kind.oriented)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/elements {}: its surface has no two sides: more than two elements meet at an "
-        "edge, or it is a Moebius strip",
-        id);
-  if (closed && !surface->kind.closed)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/elements {}: its surface has a rim, and encloses no gas: use a closed mesh, whose "
-        "elements share their nodes, or fix mpm/airbag pressure",
-        id);
-  surface->pressure = who;
-  comm_reverse = width = 21 + body->nhistory;    // before LAMMPS makes room for messages
-}
-
-/** Largest frequency of free nodes, by the theorem of Gerschgorin: its square is at most the
- *  largest sum of a row of the stiffness over its mass. */
-double FixMPMElements::largest_bending_frequency() const
-{
-  std::vector<double> sum(ids.n, 0.0), all(ids.n);
-  body->add_bending_sums(ids.low, sum);
-  MPI_Allreduce(sum.data(), all.data(), (int) ids.n, MPI_DOUBLE, MPI_SUM, world);
-  double largest = 0.0, square;
-  for (int i = 0; i < atom->nlocal; i++)
-    if (atom->mask[i] & groupbit)
-      largest = std::max(largest, all[atom->tag[i] - ids.low] / atom->rmass[i]);
-  MPI_Allreduce(&largest, &square, 1, MPI_DOUBLE, MPI_MAX, world);
-  return sqrt(square * force->ftm2v / force->nktv2p);
-}
-
-/* ----------------------------------------------------------------------
-   Energy that a body without a lattice spends is not in the balance of the lattices, which has
-   neither its kinetic energy nor the forces that move it: the material returns it, and this fix
-   keeps it
-------------------------------------------------------------------------- */
-
+/** Energy that a body without a lattice spends is not in the balance of the lattices, which has
+ *  neither its kinetic energy nor the forces that move it: the material returns it, and this fix
+ *  keeps it. */
 void FixMPMElements::keep_spent(const std::function<void()> &strain)
 {
   double work_before[NWORK];
@@ -588,17 +318,10 @@ double FixMPMElements::stored_energy() const
 {
   double sum = comm->me == 0 ? -surface->work : 0.0;
   internal->add_stored_energy(sum);
-  if (bending)
-    body->for_bending(atom->x, [&](double stored, std::size_t, int, const double(*)[3]) {
-      sum += stored;
-    });
   return sum;
 }
 
-/* ----------------------------------------------------------------------
-   bending and the gas add stiffness, so that squares of frequencies add
-------------------------------------------------------------------------- */
-
+/** Bending and the gas add stiffness, so that squares of frequencies add. */
 double FixMPMElements::stable_dt(tagint &tag, double &speed) const
 {
   // 1 % of the time step, less than what the bound has to spare
@@ -606,7 +329,7 @@ double FixMPMElements::stable_dt(tagint &tag, double &speed) const
   const double smallest = internal->stable_dt(tag, speed);
   const double gas = gas_frequency();
   if (tag == 0) return smallest;    // no elements here: other ranks know the limit
-  const double others = hypot(2.0 / smallest, bending ? bending_frequency : 0.0);
+  const double others = hypot(2.0 / smallest, bending ? internal->bending_frequency : 0.0);
   if (gas < LITTLE_GAS * others) return 2.0 / others;
   if (gas > others) speed = 0.0;
   return 2.0 / hypot(others, gas);
@@ -615,15 +338,14 @@ double FixMPMElements::stable_dt(tagint &tag, double &speed) const
 double FixMPMElements::gas_frequency() const
 {
   if (!surface->has_gas()) return 0.0;
-  auto &self = const_cast<FixMPMElements &>(*this);    // for messages
-  self.sent.assign(3 * ((std::size_t) atom->nlocal + atom->nghost), 0.0);
-  const double volume = surface->volume_gradient(self.sent.data());
+  double volume = 0.0;
   std::vector<double> gradient(3 * (std::size_t) atom->nlocal, 0.0);
-  self.bring_home(gradient.data());
+  auto &self = const_cast<FixMPMElements &>(*this);    // for messages
+  self.add_over_ranks(gradient.data(), [&](double *to) {
+    volume = surface->volume_gradient(to);
+  });
   return surface->gas_frequency(volume, gradient.data(), groupbit);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMElements::check_dt() const
 {
@@ -644,12 +366,9 @@ void FixMPMElements::check_dt() const
              update->dt, limit, id, update->ntimestep, tag, speed);
 }
 
-/* ----------------------------------------------------------------------
-   Where a slack element becomes taut its stiffness jumps, and Verlet steps that are not small then
-   gain energy each time. A bag that unfolds has 1.29 of its energy after 4000 steps of 0.8 of the
-   limit, 1.007 with half and 1.001 with a quarter of it
-------------------------------------------------------------------------- */
-
+/** Where a slack element becomes taut its stiffness jumps, and Verlet steps that are not small then
+ *  gain energy each time. A bag that unfolds has 1.29 of its energy after 4000 steps of 0.8 of the
+ *  limit, 1.007 with half and 1.001 with a quarter of it. */
 void FixMPMElements::check_free_dt()
 {
   constexpr double SLACK = 0.55;    // largest share of the limit without a warning
@@ -672,19 +391,13 @@ void FixMPMElements::check_free_dt()
         id, update->dt / limit);
 }
 
-/* ---------------------------------------------------------------------- */
-
 double FixMPMElements::memory_usage()
 {
-  return FixMPMState::memory_usage() + (double) body->nodes.capacity() * sizeof(body->nodes[0]) +
-      (double) (body->pool.capacity() + sums.capacity() + force_on.capacity()) * sizeof(double) +
+  return FixMPMState::memory_usage() + bytes_of(body->nodes, body->pool, sums, force_on) +
       internal->memory_usage();
 }
 
-/* ----------------------------------------------------------------------
-   elements move with their atom. find_nodes() drops rows that no atom owns any more
-------------------------------------------------------------------------- */
-
+/** Elements move with their atom. find_nodes() drops rows that no atom owns any more. */
 int FixMPMElements::pack_exchange(int i, double *buf)
 {
   const int n = (int) count[i] * body->stride;
@@ -715,8 +428,6 @@ void FixMPMElements::unpack_restart(int i, int nth)
   unpack_exchange(i, const_cast<double *>(values));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMElements::write_restart(FILE *fp)
 {
   keep_totals(world, &spent, 1);
@@ -736,11 +447,9 @@ void FixMPMElements::restart(char *buf)
   spent = comm->me == 0 ? list[2] : 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 int FixMPMElements::pack_reverse_comm(int n, int start, double *buf)
 {
-  if (!sent.empty()) {    // see bring_home()
+  if (!sent.empty()) {    // see add_over_ranks()
     std::copy_n(&sent[3 * (std::size_t) start], 3 * (std::size_t) n, buf);
     return 3 * n;
   }
@@ -755,5 +464,86 @@ void FixMPMElements::unpack_reverse_comm(int n, int *list, double *buf)
   for (int k = 0; k < n && sent.empty(); k++) {
     double *const s = &sums[(std::size_t) list[k] * width];
     for (int c = 0; c < width; c++) s[c] += *buf++;
+  }
+}
+
+/** Stores the trial displacements, also of nodes that are points of other ranks. */
+void FixMPMElements::take_motion(const double *u)
+{
+  motion.assign(3 * ((std::size_t) atom->nlocal + atom->nghost), 0.0);
+  std::copy_n(u, 3 * (std::size_t) atom->nlocal, motion.data());
+  comm->forward_comm(this, 3);
+}
+
+int FixMPMElements::pack_forward_comm(int n, int *list, double *buf, int, int *)
+{
+  for (int k = 0; k < n; k++) std::copy_n(&motion[3 * (std::size_t) list[k]], 3, buf + 3 * k);
+  return 3 * n;
+}
+
+void FixMPMElements::unpack_forward_comm(int n, int first_one, double *buf)
+{
+  std::copy_n(buf, 3 * (std::size_t) n, &motion[3 * (std::size_t) first_one]);
+}
+
+/** Adds to the array to the sums over ranks of the values of nodes [local and ghost][3] that
+ *  add(sent) adds to zeros. */
+template <class Add> void FixMPMElements::add_over_ranks(double *to, const Add &add)
+{
+  sent.assign(3 * ((std::size_t) atom->nlocal + atom->nghost), 0.0);
+  add(sent.data());
+  comm->reverse_comm(this, 3);
+  for (std::size_t k = 0; k < 3 * (std::size_t) atom->nlocal; k++) to[k] += sent[k];
+  sent.clear();
+}
+
+bool FixMPMElements::forces_after(const double *u, double *f, double &carried)
+{
+  take_motion(u);
+  bool good = false;
+  std::fill_n(f, 3 * (std::size_t) atom->nlocal, 0.0);
+  add_over_ranks(f, [&](double *to) {
+    ElementForces::Trial trial{motion.data()};
+    good = internal->try_motion(trial, [&](std::size_t e, int nnode, const double(*on)[3]) {
+      for (int m = 0; m < nnode; m++) {
+        double square = 0.0;
+        for (int d = 0; d < dim; d++) {
+          to[3 * (std::size_t) body->nodes[e][m] + d] += on[m][d];
+          square += on[m][d] * on[m][d];
+        }
+        carried += std::sqrt(square);
+      }
+    });
+    // forces() does not include the pressure on open surfaces at the start
+    if (surface->pressure) surface->add_pressure_after(motion.data(), 1.0, to);
+    if (surface->pressure && !surface->kind.closed) surface->add_pressure_after(nullptr, -1.0, to);
+  });
+  return good;
+}
+
+double FixMPMElements::differentiate(const double *u)
+{
+  take_motion(u);
+  return tangents->find(motion.data());
+}
+
+void FixMPMElements::add_change(const double *du, double *dforce)
+{
+  take_motion(du);
+  add_over_ranks(dforce, [this](double *to) {
+    tangents->add_change(motion.data(), to);
+  });
+}
+
+void FixMPMElements::add_blocks(double *blocks)
+{
+  for (int b = 0; b < dim; b++) {
+    std::vector<double> column(3 * (std::size_t) atom->nlocal, 0.0);
+    add_over_ranks(column.data(), [&](double *to) {
+      tangents->add_stiffness(b, to);
+    });
+    for (int i = 0; i < atom->nlocal; i++)
+      for (int d = 0; d < dim; d++)
+        blocks[(std::size_t) i * dim * dim + dim * d + b] += column[3 * (std::size_t) i + d];
   }
 }

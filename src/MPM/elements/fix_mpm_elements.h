@@ -17,6 +17,7 @@ FixStyle(mpm/elements,FixMPMElements);
 
 #include "base/mpm_state.h"
 #include "elements/element_forces.h"
+#include "elements/element_nodes.h"
 #include "elements/element_surface.h"
 #include "elements/mpm_elements_options.h"
 #include "field/mpm_interfaces.h"
@@ -35,12 +36,10 @@ namespace LAMMPS_NS {
  *  in cell method of V.P. Nguyen, A. de Vaucorbeil, C. Nguyen-Thanh, T.K. Mandal, Comput. Methods
  *  Appl. Mech. Eng. 371 (2020) 113308.
  *
- *  An element belongs to one of its nodes and migrates with it; the others may be ghosts.
- */
+ *  An element belongs to one of its nodes and migrates with it; the others may be ghosts. */
 class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPMElementsOptions {
  public:
   FixMPMElements(class LAMMPS *, int, char **);
-  ~FixMPMElements() override;
   int setmask() override { return FixConst::POST_NEIGHBOR | FixConst::POST_FORCE; }
   void init() override;
   void setup_post_neighbor() override { find_nodes(); }
@@ -74,7 +73,11 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   /** Sets the pressure, which pushes a closed surface outward, and an open one toward the side from
    *  which its elements go around counterclockwise (in 2d: to the right of lines). Valid until the
    *  next init(). closed: an error if the surface encloses no volume. */
-  void set_pressure(MPMElementsPressure *, bool closed);
+  void set_pressure(MPMElementsPressure *who, bool closed)
+  {
+    surface->set_pressure(who, closed, id);
+    comm_reverse = width = 21 + body->nhistory;    // before LAMMPS makes room for messages
+  }
 
   /** Energy stored by the elements of this rank [pressure * volume]; on the first rank, minus the
    *  work done so far by the pressure in a closed surface. */
@@ -94,7 +97,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   double differentiate(const double *u) override;
   void add_change(const double *du, double *dforce) override;
   void add_blocks(double *blocks) override;
-  double asymmetry() const override;
+  double asymmetry() const override { return tangents->asymmetry(); }
 
   /** Message on a feature that trial motions do not support, with advice; null: all is
    *  supported. */
@@ -113,11 +116,11 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   bool is_thin() const { return (bool) thin; }
 
   /** ID of a fix mpm that moves nodes, or null. Collective. */
-  const char *field_of_nodes() const;
+  const char *field_of_nodes() const { return nodes.field(); }
 
   /** Smallest ID and number of the nodes; their IDs are consecutive. */
-  tagint first_node() const { return ids.low; }
-  bigint number_of_nodes() const { return ids.n; }
+  tagint first_node() const { return nodes.ids.low; }
+  bigint number_of_nodes() const { return nodes.ids.n; }
 
   /** Undeformed edges of all elements and diagonals of quadrangles, on all ranks. Nodes are
    *  numbered from the first one on. An edge is listed once for each of its elements.
@@ -139,19 +142,13 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   std::vector<MPM_NS::ElementBody::NumberedFace> all_faces() const;
 
  private:
-  struct IDs {    // number and range of the IDs of nodes
-    bigint n;
-    tagint low, high;
-  };
-
   int dim;                // of space
   int max_of_node = 0;    // largest number of elements that belong to one node
   bigint nelements;       // of the mesh
-  IDs ids;
+  ElementNodes nodes;
   bool has_lattice = true;      // does a fix mpm move the nodes?
   bool warned_slack = false;    // in this run
   double spent = 0.0;    // plastic and other dissipated work without a lattice, this rank's share
-  double bending_frequency = 0.0;
   class FixMPMMaterial *material;    // found again at the start of each run
   std::string variables;             // names of its history variables, in the order of the pool
   struct MPMPoints *points;
@@ -163,28 +160,18 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   int width;                   // of rows of sums
   std::vector<double> sums;    // forces and averages of nodes
   std::vector<double> force_on;
-  // trial motions: [local and ghost][3] displacements; values to send to other ranks;
-  // [element][maxnode dim][maxnode dim] forces by a motion of each component of each node
-  std::vector<double> motion, sent, tangents;
+  std::unique_ptr<ElementTangents> tangents;    // after a trial motion
+  std::vector<double> motion, sent;    // [local and ghost][3] trial displacements; for messages
 
-  FixMPMMaterial *find_material() const;
   std::string names_of_history() const;
-  bool has_points_of(int other_groupbit) const;
-  void check_nodes() const;
-  void check_fields() const;
   void make_elements(const MPM_NS::Mesh &);
-  void make_row(std::size_t row, const MPM_NS::MeshElement &, const double *x, bigint &rough);
-  void check_volume() const;
-  IDs count_nodes() const;
-  template <class T> std::vector<T> gather(const std::vector<T> &mine) const;
   void find_nodes();
   void compute(bool starting);
   void give_means_to_nodes();
   void check_free_dt();
   void keep_spent(const std::function<void()> &strain);
   void take_motion(const double *u);
-  void bring_home(double *to);
-  double largest_bending_frequency() const;
+  template <class Add> void add_over_ranks(double *to, const Add &add);
   double gas_frequency() const;
 };
 

@@ -9,6 +9,7 @@
 #include "elements/pair_mpm_sheet.h"
 
 #include "atom.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "comm.h"
 #include "domain.h"
@@ -32,8 +33,6 @@ using namespace MPM_NS;
 static constexpr double NEAR = 2.0;
 // nodes that are so much closer than the distance may get to the other side
 static constexpr double DEEP = 0.5;
-
-/* ---------------------------------------------------------------------- */
 
 void PairMPMSheet::compute(int eflag, int vflag)
 {
@@ -92,11 +91,8 @@ void PairMPMSheet::compute(int eflag, int vflag)
   if (vflag_fdotr) virial_fdotr_compute();
 }
 
-/* ----------------------------------------------------------------------
-   once per neighbor list: of its pairs those with a node of a sheet that are not near each other
-   along it
-------------------------------------------------------------------------- */
-
+/** Once per neighbor list: of its pairs those with a node of a sheet that are not near each other
+ *  along it. */
 void PairMPMSheet::find_pairs()
 {
   pairs.clear();
@@ -131,12 +127,9 @@ int PairMPMSheet::body_of(int i) const
   return NO_BODY;
 }
 
-/* ----------------------------------------------------------------------
-   The bound of the elements does not know of contacts. A node between two others that hold still
-   has a frequency of sqrt(2 k/m), and 2/omega is the limit. With faces it bears others as well, by
-   twice as much
-------------------------------------------------------------------------- */
-
+/** The bound of the elements does not know of contacts. A node between two others that hold still
+ *  has a frequency of sqrt(2 k/m), and 2/omega is the limit. With faces it bears others as well, by
+ *  twice as much. */
 void PairMPMSheet::warn_about_step()
 {
   if (warned_dt) return;
@@ -159,11 +152,8 @@ void PairMPMSheet::warn_about_step()
                    update->dt, all);
 }
 
-/* ----------------------------------------------------------------------
-   Layers that lie too close in the mesh jump apart. Those of a restart file have come as close as
-   they are by forces
-------------------------------------------------------------------------- */
-
+/** Layers that lie too close in the mesh jump apart. Those of a restart file have come as close as
+ *  they are by forces. */
 void PairMPMSheet::warn_about_start()
 {
   constexpr double CLOSER = 1.0e-6;    // part of the distance, for round-off
@@ -199,11 +189,8 @@ void PairMPMSheet::warn_about_start()
       (bigint) std::lround(sums[0]), distance, closest, sums[1]);
 }
 
-/* ----------------------------------------------------------------------
-   A node of another layer that is in a triangle keeps at most this distance from the corners of it,
-   and feels nothing there if it is above that of the contact
-------------------------------------------------------------------------- */
-
+/** A node of another layer that is in a triangle keeps at most this distance from the corners of
+ *  it, and feels nothing there if it is above that of the contact. */
 void PairMPMSheet::warn_about_gaps()
 {
   const bool touches = std::any_of(coeffs.begin(), coeffs.end(), [](const Coeff &c) {
@@ -223,12 +210,9 @@ void PairMPMSheet::warn_about_gaps()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Nodes repel each other, and one may still be pushed through the middle of a face. Each time that
-   neighbor lists are made, which is before a node has moved by half of the skin, the side of a face
-   on which nodes are next to it is compared with that of the time before
-------------------------------------------------------------------------- */
-
+/** Nodes repel each other, and one may still be pushed through the middle of a face. Each time that
+ *  neighbor lists are made, which is before a node has moved by half of the skin, the side of a
+ *  face on which nodes are next to it is compared with that of the time before. */
 void PairMPMSheet::warn_about_passages()
 {
   std::vector<Passages::FaceID> mine;
@@ -264,27 +248,7 @@ bool PairMPMSheet::tell_first(const Passages::Sight *found, const char *what) co
 void PairMPMSheet::share_passages(std::vector<Passages::FaceID> &mine)
 {
   std::sort(mine.begin(), mine.end());
-  passages.add(from_all_ranks(passages.take_others(mine)));
-}
-
-std::vector<Passages::Sight>
-PairMPMSheet::from_all_ranks(const std::vector<Passages::Sight> &mine) const
-{
-  std::vector<Passages::Sight> all;
-  const int size = (int) mine.size();
-  int largest;
-  MPI_Allreduce(&size, &largest, 1, MPI_INT, MPI_MAX, world);
-  if (largest == 0) return all;
-  std::vector<int> sizes(comm->nprocs), starts(comm->nprocs, 0);
-  MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, world);
-  for (int p = 1; p < comm->nprocs; p++) starts[p] = starts[p - 1] + sizes[p - 1];
-  all.resize((std::size_t) starts.back() + sizes.back());
-  MPI_Datatype sight;    // as the number of bytes may be above what an int has
-  MPI_Type_contiguous(sizeof(Passages::Sight), MPI_BYTE, &sight);
-  MPI_Type_commit(&sight);
-  MPI_Allgatherv(mine.data(), size, sight, all.data(), sizes.data(), starts.data(), sight, world);
-  MPI_Type_free(&sight);
-  return all;
+  passages.add(gather_on_all(passages.take_others(mine), world));
 }
 
 /** Nodes that are next to faces of this rank, but not near these along the surface; mine: these
@@ -334,7 +298,6 @@ void PairMPMSheet::for_atoms_near(
   const int dim = domain->dimension;
 
   // atoms in cells of this size
-
   const auto cell_of = [&](double at) {
     return (int64_t) std::floor(at / range);
   };
@@ -369,10 +332,7 @@ void PairMPMSheet::for_atoms_near(
   }
 }
 
-/* ----------------------------------------------------------------------
-   pair_style mpm/sheet D
-------------------------------------------------------------------------- */
-
+/** pair_style mpm/sheet D */
 Options MPMSheetOptions::declare()
 {
   using namespace option;
@@ -389,10 +349,7 @@ void PairMPMSheet::settings(int narg, char **arg)
   read_options(lmp, options, narg, arg, 0);
 }
 
-/* ----------------------------------------------------------------------
-   pair_coeff I J k keyword values ...
-------------------------------------------------------------------------- */
-
+/** pair_coeff I J k keyword values ... */
 Options MPMSheetCoeff::declare()
 {
   using namespace option;
@@ -403,8 +360,6 @@ Options MPMSheetCoeff::declare()
                 "damping force per velocity at which two nodes approach or separate")});
   return o;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PairMPMSheet::init_style()
 {
@@ -420,7 +375,6 @@ void PairMPMSheet::init_style()
 
   // atoms may have been displaced since the last run: only those that are on the wrong side keep
   // what they know
-
   approaches.erase(std::remove_if(approaches.begin(), approaches.end(),
                                   [](const Approach &a) {
                                     return !a.sight.within;
@@ -434,10 +388,7 @@ void PairMPMSheet::init_style()
   neighbor->add_request(this);
 }
 
-/* ----------------------------------------------------------------------
-   all ranks know which nodes are near each other, as any can be ghosts
-------------------------------------------------------------------------- */
-
+/** All ranks know which nodes are near each other, as any can be ghosts. */
 void PairMPMSheet::find_bodies()
 {
   const auto bodies_before = std::move(bodies);
@@ -481,10 +432,6 @@ double PairMPMSheet::init_one(int i, int j)
   return coeff_of(i, j).stiffness > 0.0 ? distance : 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   restart
-------------------------------------------------------------------------- */
-
 void PairMPMSheet::write_restart_settings(FILE *fp)
 {
   fwrite(&distance, sizeof(double), 1, fp);
@@ -503,10 +450,7 @@ void PairMPMSheet::read_restart_settings(FILE *fp)
 
 double PairMPMSheet::memory_usage()
 {
-  double bytes = MPMPair::memory_usage() + passages.memory();
-  bytes += (double) seen.capacity() * sizeof(seen[0]) +
-      (double) approaches.capacity() * sizeof(approaches[0]);
-  for (const auto &body : bodies)
-    bytes += body.nodes->memory() + (double) body.faces.capacity() * sizeof(body.faces[0]);
+  double bytes = MPMPair::memory_usage() + passages.memory() + bytes_of(seen, approaches);
+  for (const auto &body : bodies) bytes += body.nodes->memory() + bytes_of(body.faces);
   return bytes;
 }

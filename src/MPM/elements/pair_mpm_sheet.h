@@ -19,12 +19,10 @@ PairStyle(mpm/sheet,PairMPMSheet);
 #include "declare/option.h"
 #include "mesh/face_contact.h"
 #include "mesh/near_nodes.h"
-#include "mesh/passages.h"
 
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -80,8 +78,7 @@ class PairMPMSheet : public MPMPair<MPMSheetCoeff>, private MPMSheetOptions {
     std::vector<Face> faces;           // with the keyword faces, in the order of their lowest nodes
     std::vector<std::size_t> first;    // of the faces of a node
   };
-  struct
-      FaceContact {    // of an atom with a face, or with an edge or a node that several faces share
+  struct FaceContact {    // of an atom with a face, or an edge or a node that several faces share
     int atom, nnode, node[3];
     double weight[3];                    // of the nodes
     double n[3];                         // unit vector along which the atom is pushed
@@ -94,8 +91,8 @@ class PairMPMSheet : public MPMPair<MPMSheetCoeff>, private MPMSheetOptions {
   };
   struct Approach {    // of an atom of this rank and a face that can touch it
     int atom, face;
-    MPM_NS::Passages::Sight
-        sight;    // side: from which the atom is pushed; within: is it on the other one?
+    // side: from which the atom is pushed; within: is it on the other one?
+    MPM_NS::Passages::Sight sight;
     bool operator<(const Approach &other) const { return sight < other.sight; }
   };
 
@@ -114,8 +111,6 @@ class PairMPMSheet : public MPMPair<MPMSheetCoeff>, private MPMSheetOptions {
   void warn_about_gaps();
   void warn_about_passages();
   void share_passages(std::vector<MPM_NS::Passages::FaceID> &mine);
-  std::vector<MPM_NS::Passages::Sight>
-  from_all_ranks(const std::vector<MPM_NS::Passages::Sight> &mine) const;
   bool tell_first(const MPM_NS::Passages::Sight *found, const char *what) const;
   bool touches(int i, const SeenFace &);
   void for_atoms_near(const std::vector<SeenFace> &, int natoms, double range,

@@ -12,6 +12,7 @@
 #include "elements/pair_mpm_sheet.h"
 
 #include "atom.h"
+#include "base/mpm_lists.h"
 #include "comm.h"
 #include "domain.h"
 #include "elements/fix_mpm_elements.h"
@@ -89,12 +90,9 @@ double PairMPMSheet::see_faces()
   return sqrt(longest);
 }
 
-/* ----------------------------------------------------------------------
-   once per neighbor list: atoms of this rank and faces that may touch before the next one. An atom
-   keeps the side of a face that it had in the step before, also when it has come from another rank,
-   as it may have gone through in this one
-------------------------------------------------------------------------- */
-
+/** Once per neighbor list: atoms of this rank and faces that may touch before the next one. An atom
+ *  keeps the side of a face that it had in the step before, also when it has come from another
+ *  rank, as it may have gone through in this one. */
 void PairMPMSheet::find_faces()
 {
   const double longest = see_faces(), range = distance + neighbor->skin;
@@ -108,14 +106,13 @@ void PairMPMSheet::find_faces()
                longest, update->ntimestep, needed, cutoff);
 
   // what was known, of atoms that are here now
-
   std::vector<Passages::Sight> known, gone;
   for (const auto &a : approaches) {
     const int i = atom->map((tagint) a.sight.node);
     (i >= 0 && i < atom->nlocal ? known : gone).push_back(a.sight);
   }
   if (comm->nprocs > 1)
-    for (const auto &sight : from_all_ranks(gone)) {
+    for (const auto &sight : gather_on_all(gone, world)) {
       const int i = atom->map((tagint) sight.node);
       if (i >= 0 && i < atom->nlocal) known.push_back(sight);
     }
@@ -153,7 +150,6 @@ void PairMPMSheet::find_faces()
   }
 
   // what is still on the wrong side is so far away that it is not held any more
-
   if (!warned_lost)
     warned_lost = tell_first(
         on_wrong_side(),
@@ -161,12 +157,9 @@ void PairMPMSheet::find_faces()
         "it stays on the wrong side: use a larger stiffness");
 }
 
-/* ----------------------------------------------------------------------
-   contacts of atoms of this rank. Where an atom is next to a face, and not above or below it, the
-   side of this one is that on which it is. It is kept above and below, and on all faces as long as
-   the atom has gone through one of them
-------------------------------------------------------------------------- */
-
+/** Contacts of atoms of this rank. Where an atom is next to a face, and not above or below it, the
+ *  side of this one is that on which it is. It is kept above and below, and on all faces as long as
+ *  the atom has gone through one of them. */
 void PairMPMSheet::for_face_contacts(const std::function<void(const FaceContact &)> &visit)
 {
   double **const x = atom->x;

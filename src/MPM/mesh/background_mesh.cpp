@@ -9,6 +9,8 @@
 #include "mesh/background_mesh.h"
 
 #include "math/matrix.h"
+#include "mesh/element.h"
+#include "mesh/vector3.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,11 +18,9 @@
 #include <stdexcept>
 
 using namespace MPM_NS;
+using namespace MPM_NS::vector3;
 
 namespace {
-
-constexpr int CORNER[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
-                              {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
 
 /** Sides of an element, outward. */
 struct Sides {
@@ -29,24 +29,20 @@ struct Sides {
 };
 const Sides &sides_of(ElementType type)
 {
-  static const Sides
-      triangle = {3, 2, {{0, 1}, {1, 2}, {2, 0}}},
-      quad = {4, 2, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},
-      tetrahedron = {4, 3, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}},
-      hexahedron = {
-          6,
-          4,
-          {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}};
-  switch (type) {
-    case ElementType::TRIANGLE:
-      return triangle;
-    case ElementType::QUAD:
-      return quad;
-    case ElementType::TETRAHEDRON:
-      return tetrahedron;
-    default:
-      return hexahedron;
-  }
+  static const Sides of[4] = {
+      {3, 2, {{0, 1}, {1, 2}, {2, 0}}},                        // triangle
+      {4, 2, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}},                // quadrangle
+      {4, 3, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}},    // tetrahedron
+      {6, 4, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}}};
+  return of[static_cast<int>(type)];
+}
+
+BackgroundMesh::Face side_of(const BackgroundMesh::Cell &cell, int number, int side)
+{
+  const auto &sides = sides_of(cell.type);
+  BackgroundMesh::Face face = {number, sides.nnode, {}};
+  for (int k = 0; k < sides.nnode; k++) face.node[k] = cell.node[sides.node[side][k]];
+  return face;
 }
 
 /** Side of a simplex that is opposite to a node. */
@@ -65,22 +61,6 @@ int side_at(int dim, int d, bool high)
 bool is_simplex(const BackgroundMesh::Cell &cell, int dim)
 {
   return cell.nnode == dim + 1;
-}
-
-/** Functions of a square or cube and their derivatives at xi. */
-void functions(int dim, const double *xi, double *N, double (*dN)[3])
-{
-  for (int k = 0; k < 1 << dim; k++) {
-    double f[3] = {1.0, 1.0, 1.0};
-    for (int d = 0; d < dim; d++) f[d] = 0.5 * (1.0 + CORNER[k][d] * xi[d]);
-    N[k] = f[0] * f[1] * f[2];
-    for (int d = 0; d < 3; d++) dN[k][d] = 0.0;
-    for (int d = 0; d < dim; d++) {
-      dN[k][d] = 0.5 * CORNER[k][d];
-      for (int e = 0; e < dim; e++)
-        if (e != d) dN[k][d] *= f[e];
-    }
-  }
 }
 
 /** y = J^-1 b for the columns of J; returns det J. In the plane the third row and column are those
@@ -112,7 +92,7 @@ void find_map(const BackgroundMesh &mesh, BackgroundMesh::Cell &cell)
     for (int m = 0; m < 8; m++) {
       double sum = 0.0;
       for (int k = 0; k < cell.nnode; k++) {
-        const int *const c = CORNER[k];
+        const int *const c = CUBE_CORNER[k];
         const int terms[8] = {1,           c[0],        c[1],        c[2],
                               c[0] * c[1], c[1] * c[2], c[2] * c[0], c[0] * c[1] * c[2]};
         // in the plane, all corners have the same third coordinate, and terms with it are others
@@ -171,8 +151,6 @@ std::array<int, 4> key_of(const int *node, const int *local, int n)
 
 }    // namespace
 
-/* ---------------------------------------------------------------------- */
-
 BackgroundMesh::BackgroundMesh(const Mesh &mesh, int dim, const std::string &part) : dim(dim)
 {
   rest = mesh;
@@ -209,24 +187,17 @@ void BackgroundMesh::add_cells(const Mesh &mesh, const std::string &part)
     cell.label = e->label;
     std::fill_n(cell.neighbor, 6, -1);
     for (int k = 0; k < cell.nnode; k++) cell.node[k] = place_of[e->node[k]];
-    for (int d = 0; d < 3; d++) {
-      cell.low[d] = std::numeric_limits<double>::max();
-      cell.high[d] = -cell.low[d];
-      for (int k = 0; k < cell.nnode; k++) {
-        cell.low[d] = std::min(cell.low[d], nodes[cell.node[k]][d]);
-        cell.high[d] = std::max(cell.high[d], nodes[cell.node[k]][d]);
-      }
-    }
+    cell.low = cell.high = nodes[cell.node[0]];
+    for (int k = 1; k < cell.nnode; k++) include(nodes[cell.node[k]], cell.low, cell.high);
 
     // the volume at each corner of a square or cube: shape functions must have a place for each
     // point
-
     const bool simplex = is_simplex(cell, dim);
     double volume = 0.0, N[8], dN[8][3], J[9], none[3] = {0.0, 0.0, 0.0}, y[3];
     for (int k = 0; k < (simplex ? 1 : cell.nnode); k++) {
       double corner[3];
-      for (int d = 0; d < 3; d++) corner[d] = CORNER[k][d];
-      if (!simplex) functions(dim, corner, N, dN);
+      std::copy_n(CUBE_CORNER[k], 3, corner);
+      if (!simplex) cube_functions(dim, corner, N, dN);
       jacobian(*this, cell, simplex ? SIMPLEX : dN, J);
       const double det = solve(J, none, y);
       if (!(det > 0.0))
@@ -236,12 +207,9 @@ void BackgroundMesh::add_cells(const Mesh &mesh, const std::string &part)
     }
     double largest = 0.0;
     for (int s = 0; s < cell.nface; s++) {
-      const auto &sides = sides_of(cell.type);
-      Face face = {0, sides.nnode, {}};
-      for (int k = 0; k < sides.nnode; k++) face.node[k] = cell.node[sides.node[s][k]];
       double normal[3], share[4];
-      area(face, nodes, normal, share);
-      largest = std::max(largest, std::sqrt(dot(normal, normal)));
+      area(side_of(cell, 0, s), nodes, normal, share);
+      largest = std::max(largest, norm(normal));
     }
     cell.height = (simplex ? dim : 1.0) * volume / largest;
     if (!simplex) find_map(*this, cell);
@@ -281,15 +249,9 @@ void BackgroundMesh::connect()
 /** About one cell in each. */
 void BackgroundMesh::sort_into_bins()
 {
-  double high[3];
-  for (int d = 0; d < 3; d++) {
-    low[d] = std::numeric_limits<double>::max();
-    high[d] = -low[d];
-    for (const auto &x : nodes) {
-      low[d] = std::min(low[d], x[d]);
-      high[d] = std::max(high[d], x[d]);
-    }
-  }
+  Vector high = nodes[0];
+  low = nodes[0];
+  for (const auto &x : nodes) include(x, low, high);
   double volume = 1.0;
   for (int d = 0; d < dim; d++) volume *= high[d] - low[d];
   const double width = std::pow(volume / (double) cells.size(), 1.0 / dim);
@@ -301,10 +263,11 @@ void BackgroundMesh::sort_into_bins()
     int from[3], to[3];
     for (int d = 0; d < 3; d++) {
       const double more = 0.1 * (cell.high[d] - cell.low[d]);
-      from[d] =
-          std::clamp((int) std::floor((cell.low[d] - more - low[d]) / size[d]), 0, nbin[d] - 1);
-      to[d] =
-          std::clamp((int) std::floor((cell.high[d] + more - low[d]) / size[d]), 0, nbin[d] - 1);
+      const auto bin_at = [&](double x) {
+        return std::clamp((int) std::floor((x - low[d]) / size[d]), 0, nbin[d] - 1);
+      };
+      from[d] = bin_at(cell.low[d] - more);
+      to[d] = bin_at(cell.high[d] + more);
     }
     for (int z = from[2]; z <= to[2]; z++)
       for (int y = from[1]; y <= to[1]; y++)
@@ -324,11 +287,8 @@ void BackgroundMesh::sort_into_bins()
     });
 }
 
-/* ----------------------------------------------------------------------
-   Natural coordinates of x: of a simplex those of the nodes but the first one, else from -1 to 1.
-   Returns by which share of its width x is outside, and across which side to go to it
-------------------------------------------------------------------------- */
-
+/** Natural coordinates of x: of a simplex those of the nodes but the first one, else from -1 to 1.
+ *  Returns by which share of its width x is outside, and across which side to go to it. */
 double BackgroundMesh::natural(const Cell &cell, const double *x, double *xi, int &across) const
 {
   double J[9], r[3] = {0.0, 0.0, 0.0}, y[3];
@@ -349,7 +309,6 @@ double BackgroundMesh::natural(const Cell &cell, const double *x, double *xi, in
   }
 
   // Newton's method, whose error is squared in each step; what is far away needs the direction only
-
   for (int d = 0; d < 3; d++) xi[d] = 0.0;
   for (int step = 0; step < 30; step++) {
     map_back(cell, dim, x, xi, r, J);
@@ -386,7 +345,7 @@ void BackgroundMesh::evaluate(const Cell &cell, const double *xi, Place &place) 
   } else {
     const double none[3] = {0.0, 0.0, 0.0};
     double r[3];
-    functions(dim, xi, place.N, dN);
+    cube_functions(dim, xi, place.N, dN);
     map_back(cell, dim, none, xi, r, J);
   }
   const double C[9] = MPM_COFACTORS(J), inv = 1.0 / dot(J, C);
@@ -397,8 +356,6 @@ void BackgroundMesh::evaluate(const Cell &cell, const double *xi, Place &place) 
           ? inv * (C[3 * a] * d[k][0] + C[3 * a + 1] * d[k][1] + C[3 * a + 2] * d[k][2])
           : 0.0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void BackgroundMesh::find(const double *x, int hint, Place &place) const
 {
@@ -417,7 +374,6 @@ void BackgroundMesh::find(const double *x, int hint, Place &place) const
 
   // a walk ends where it would leave the mesh, around a corner of which the point may still be
   // inside
-
   int across;
   const int longest = 100;
   for (int c = hint, n = 0; c >= 0 && n < longest; n++) {
@@ -462,8 +418,6 @@ void BackgroundMesh::find(const double *x, int hint, Place &place) const
   }
   evaluate(cell, best_xi, place);
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::vector<const MeshElement *> BackgroundMesh::elements_of(const std::string &group) const
 {
@@ -523,10 +477,7 @@ std::vector<BackgroundMesh::Face> BackgroundMesh::faces_of(const std::string &gr
     const auto [c, s] = found->second;
     if (cells[c].neighbor[s] >= 0)
       throw std::runtime_error(name + " is between two cells, and not at the rim of the mesh");
-    const auto &sides = sides_of(cells[c].type);
-    Face face = {c, sides.nnode, {}};
-    for (int k = 0; k < sides.nnode; k++) face.node[k] = cells[c].node[sides.node[s][k]];
-    list.push_back(face);
+    list.push_back(side_of(cells[c], c, s));
   }
   return list;
 }
@@ -547,21 +498,17 @@ void BackgroundMesh::area(const Face &face, const std::vector<std::array<double,
     normal[2] = 0.0;
     return;
   }
-  double a[3], b[3];
-  for (int d = 0; d < 3; d++) {
-    a[d] = face.nnode == 3 ? at(1)[d] - at(0)[d] : at(2)[d] - at(0)[d];
-    b[d] = face.nnode == 3 ? at(2)[d] - at(0)[d] : at(3)[d] - at(1)[d];
-  }
-  cross(a, b, normal);
+  const Vector a = (face.nnode == 3 ? at(1) : at(2)) - at(0),
+               b = face.nnode == 3 ? at(2) - at(0) : at(3) - at(1);
+  cross(a.data(), b.data(), normal);
   for (int d = 0; d < 3; d++) normal[d] *= 0.5;
   if (face.nnode == 3) return;
   const double all = dot(normal, normal);
   std::fill_n(share, 4, 0.0);
   for (int q = 0; q < 4; q++) {
-    double xi[3] = {CORNER[q][0] / std::sqrt(3.0), CORNER[q][1] / std::sqrt(3.0), 0.0}, N[8],
-           dN[8][3];
-    functions(2, xi, N, dN);
-    double u[3] = {0.0}, v[3] = {0.0}, w[3];
+    const double xi[3] = {CUBE_CORNER[q][0] / std::sqrt(3.0), CUBE_CORNER[q][1] / std::sqrt(3.0)};
+    double N[8], dN[8][3], u[3] = {0.0}, v[3] = {0.0}, w[3];
+    cube_functions(2, xi, N, dN);
     for (int k = 0; k < 4; k++)
       for (int d = 0; d < 3; d++) {
         u[d] += at(k)[d] * dN[k][0];

@@ -26,9 +26,9 @@ class BackgroundMesh {
     int node[8];
     int neighbor[6];    ///< the cell across each face; -1: none
     int64_t label;      ///< its number in the mesh file
-    double
-        height;    ///< volume over the area of its largest face (of a simplex: times the dimension)
-    double low[3], high[3];
+    /** Volume over the area of its largest face (of a simplex: times the dimension). */
+    double height;
+    std::array<double, 3> low, high;
     /** Of a square or cube: coefficients of the map from natural coordinates to positions, for the
      *  terms 1, xi, eta, zeta, xi eta, eta zeta, zeta xi, xi eta zeta. */
     double map[8][3];
@@ -81,7 +81,8 @@ class BackgroundMesh {
  private:
   Mesh rest;    // elements of lower dimension, with their groups; nodes as in the file
   std::vector<int> place_of;    // of nodes in the file among those of cells, -1: not one of these
-  double low[3], size[3];       // of bins
+  std::array<double, 3> low;    // of bins
+  double size[3];
   int nbin[3];
   std::vector<int> first_in_bin, in_bin;
 

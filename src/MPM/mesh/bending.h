@@ -9,8 +9,8 @@
 #ifndef MPM_MESH_BENDING_H
 #define MPM_MESH_BENDING_H
 
-// Bending of surfaces of triangles and of lines, by the positions of their nodes alone. Nothing
-// here knows about LAMMPS.
+// Bending of surfaces of triangles and of lines, by the positions of their nodes alone, and strains
+// along a surface that triangles share at their edges. Nothing here knows about LAMMPS.
 
 namespace MPM_NS {
 
@@ -27,39 +27,21 @@ inline bool is_smooth(const double *n, const double *m)
  *  neighbor, across its edges from i + 1 to 3 + i and from 3 + i to i + 2. */
 constexpr int PATCH_NODES = 12;
 
-/** Stiffness against short waves. Waves that are short compared with the mesh change the curvatures
- *  of triangles less than those of the surface, so that a force on one node meets too little
- *  resistance. Such waves show in the part of the values at the nodes of a patch that no polynomial
- *  describes: for values w, in sum(s w) with unit vectors s that are normal to all polynomials of
- *  an order. Each sum resists with the energy D (q^2 sum(s w)/area)^2 area/2 times ABOVE_THIRD for
- *  polynomials of third order. This energy vanishes with the fourth power of the element size where
- *  a surface bends smoothly. Where nodes with four triangles leave no more than ten nodes, as with
- *  diagonals that change direction, the factor is ABOVE_SECOND for polynomials of second order.
- *  This removes most of the error of the curvatures of waves there, which is of second order. q is
- *  four times the area over the square of the longest edge. It is 1 at most, and less for triangles
- *  that are narrower than half a square, in which curvatures along the triangle are smaller than
- *  w/area. */
+/** Stiffness against short waves, which change the curvatures of triangles less than those of the
+ *  surface. They show in the part of the values w at the nodes of a patch that no polynomial of
+ *  third order describes, in sum(s w) with unit vectors s that are normal to all of these. Each sum
+ *  has the energy ABOVE_THIRD D (q^2 sum(s w)/area)^2 area/2, which vanishes with the fourth power
+ *  of the element size; q, at most 1, is four times the area over the square of the longest edge.
+ *  Where nodes with four triangles leave no more than FEW_NODES, as with diagonals that change
+ *  direction, it is ABOVE_SECOND, and polynomials of second order. */
 constexpr double ABOVE_THIRD = 2.7, ABOVE_SECOND = 0.6;
-constexpr int FEW_NODES = 10;    ///< number of nodes of a patch up to which second order is used
+constexpr int FEW_NODES = 10;
 
 /** Instead of the resistance above third order, the curvature can change linearly in a triangle, as
  *  in a discrete Kirchhoff triangle (J.L. Batoz, K.J. Bathe, L.W. Ho, Int. J. Numer. Methods Eng.
- *  15 (1980) 1771), with slopes at the corners from the nodes of the patch. These slopes are exact
- *  only for surfaces of second order and exaggerate the change, so that only this part of its
- *  energy resists. With it, waves of twelve edges have 1.00 to 1.02 of the stiffness of a plate,
- *  and waves of six edges 0.98 to 1.07. */
+ *  15 (1980) 1771), with slopes at the corners from the nodes of the patch. These are exact only for
+ *  surfaces of second order and exaggerate the change: this part of its energy resists. */
 constexpr double LINEAR_PART = 0.5;
-
-/** For n nodes, the first three of which are the corners: coefficients of the values at the nodes
- *  that give the deviations from the mean curvature (xx yy xy and xx yy xy) along two linear
- *  functions whose mean square is one, times the square root of LINEAR_PART. They vanish for
- *  surfaces of second order. Returns false if the nodes do not determine the slopes at the
- *  corners. */
-bool linear_curvatures(const double (*at)[2], int n, double (*rows)[6]);
-
-/** Finds vectors s[.][k] for n nodes that are normal to all polynomials of an order (2 or 3), no
- *  more than most of them. Returns their number. */
-int above_polynomials(int order, const double (*at)[2], int n, int most, double (*s)[4]);
 
 /** Curvature of a triangle from the slopes across its edges, which the triangles on both sides of
  *  an edge share. By the theorem of Gauss, b A = sum_i l_i m_i x slope_i, with the length l_i and
@@ -130,6 +112,32 @@ struct BentLine {
 
  private:
   double mean() const { return 0.5 * (length[0] + length[1]); }
+};
+
+/** Correction of the energy of two triangles of constant strain that share the mean of their
+ *  strains at their common edge.
+ *
+ *  In a third of each triangle, the strain is the mean of both strains, which belongs to the edge
+ *  (G.R. Liu, T. Nguyen-Thoi, K.Y. Lam, J. Sound Vib. 320 (2009) 1100). This removes a third of V1
+ *  V2/(V1 + V2) times the energy of the difference of their strains. Only the fraction PART of that
+ *  is removed here, so that the rest is positive also where the material is softer than at rest.
+ *  Strains are Green strains in axes of the edge, with the second triangle unfolded to the plane of
+ *  the first one, so that rotations, and folds along the edge, cause no strain. The correction
+ *  fades to zero as strains approach SMALL. Nodes 0 and 1 are at the edge; node 2 belongs to the
+ *  triangle with the edge from 0 to 1, and node 3 to the triangle with the edge from 1 to 0. */
+struct SharedStrain {
+  static constexpr double PART = 0.7, SMALL = 0.05;
+  /** Gradients of the shape functions of both triangles: nodes 0 1 2 and 1 0 3 */
+  double g[2][3][2];
+  /** PART of a third of A1 A2/(A1 + A2); 0: the triangles do not form one smooth surface */
+  double weight;
+
+  /** Sets gradients and weight from the positions X[4] in the reference configuration. */
+  void define(const double (*X)[3]);
+
+  /** Energy of the correction, which is never positive, for a sheet with the stiffness K = E t/(1 -
+   *  nu^2) and Poisson's ratio nu at the positions x[4]. Adds the forces on the nodes to f[4]. */
+  double energy(double K, double nu, const double (*x)[3], double (*f)[3]) const;
 };
 
 }    // namespace MPM_NS

@@ -6,16 +6,19 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Slopes across the edges of a triangle, and the curvature that follows from them.
+// Slopes across the edges of a triangle, and the curvature that follows from them; what resists
+// short waves; how the curvature changes within a triangle.
 
 #include "math/matrix.h"
 #include "mesh/bending.h"
+#include "mesh/vector3.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 using namespace MPM_NS;
+using namespace MPM_NS::vector3;
 
 namespace {
 
@@ -47,12 +50,10 @@ void slopes_of(const Place *p, const Place &m, double *slope)
 void normal_of(const double *a, const double *b, const double *c, double *n)
 {
   double u[3], v[3];
-  for (int d = 0; d < 3; d++) {
-    u[d] = b[d] - a[d];
-    v[d] = c[d] - a[d];
-  }
+  difference(b, a, u);
+  difference(c, a, v);
   cross(u, v, n);
-  const double size = std::sqrt(dot(n, n));
+  const double size = norm(n);
   for (int d = 0; d < 3; d++) n[d] /= size;
 }
 
@@ -97,11 +98,9 @@ struct Unfolded {
 void Unfolded::unfold(int a, int b, int c, const double *n, double *normal)
 {
   double edge[3], other[3];
-  for (int d = 0; d < 3; d++) {
-    edge[d] = X[b][d] - X[a][d];
-    other[d] = X[c][d] - X[a][d];
-  }
-  const double l = std::sqrt(dot(edge, edge)), along = dot(other, edge) / l,
+  difference(X[b], X[a], edge);
+  difference(X[c], X[a], other);
+  const double l = norm(edge), along = dot(other, edge) / l,
                away = std::sqrt(std::max(0.0, dot(other, other) - along * along)),
                x = (p[b].x - p[a].x) / l, y = (p[b].y - p[a].y) / l;
   p[c] = {p[a].x + along * x + away * y, p[a].y + along * y - away * x};
@@ -114,12 +113,12 @@ Unfolded::Unfolded(const double (*places)[3], const bool *neighbors) : X(places)
   double n[3], first[3], second[3], edge[3], across[3];
   for (int k = 0; k < PATCH_NODES; k++) has[k] = k < 3 || neighbors[k - 3];
   normal_of(X[0], X[1], X[2], n);
-  for (int d = 0; d < 3; d++) edge[d] = X[1][d] - X[0][d];
-  const double l = std::sqrt(dot(edge, edge));
+  difference(X[1], X[0], edge);
+  const double l = norm(edge);
   cross(n, edge, across);
   for (int k = 1; k < 3; k++) {
     double from[3];
-    for (int d = 0; d < 3; d++) from[d] = X[k][d] - X[0][d];
+    difference(X[k], X[0], from);
     p[k] = {dot(from, edge) / l, dot(from, across) / l};
   }
   for (int i = 0; i < 3; i++) {
@@ -144,7 +143,6 @@ double correct(const Place *at, const int *node, int n, double *c)
   for (double &s : size) s = std::sqrt(s);
 
   // values of 1 x y, made orthogonal, and of xx xy yy, without their parts of these
-
   double P[6][PATCH_NODES], error[3] = {0.0, 0.0, 0.0};
   for (int k = 0; k < n; k++) {
     const double x = at[k].x / size[0], y = at[k].y / size[1];
@@ -188,19 +186,205 @@ double correct(const Place *at, const int *node, int n, double *c)
   return left < EXACT ? 0.0 : left;
 }
 
+// of a polynomial that is left without those before, below which it is one of these; square of what
+// is left of a node
+constexpr double SAME = 1.0e-6, NONE = 0.01;
+
+/** Take the parts along unit vectors off, twice for round-off; returns the length that is left. */
+double reduce(const double (*unit)[PATCH_NODES], int nunit, int n, double *v)
+{
+  for (int again = 0; again < 2; again++)
+    for (int u = 0; u < nunit; u++) {
+      double part = 0.0;
+      for (int k = 0; k < n; k++) part += unit[u][k] * v[k];
+      for (int k = 0; k < n; k++) v[k] -= part * unit[u][k];
+    }
+  double square = 0.0;
+  for (int k = 0; k < n; k++) square += v[k] * v[k];
+  return std::sqrt(square);
+}
+
+/** Finds vectors s[.][k] for n nodes that are normal to all polynomials of an order (2 or 3), no
+ *  more than most of them. Returns their number. */
+int above_polynomials(int order, const Place *at, int n, int most, double (*s)[4])
+{
+  Place center = {0.0, 0.0};
+  double size = 0.0, unit[12][PATCH_NODES];
+  for (int k = 0; k < n; k++) center = {center.x + at[k].x / n, center.y + at[k].y / n};
+  for (int k = 0; k < n; k++)
+    size += (std::pow(at[k].x - center.x, 2) + std::pow(at[k].y - center.y, 2)) / n;
+  size = std::sqrt(size);
+  int nunit = 0, found = 0;
+  for (int degree = 0; degree <= order; degree++)
+    for (int b = 0; b <= degree; b++) {
+      double *const v = unit[nunit], square = 0.0;
+      for (int k = 0; k < n; k++) {
+        v[k] = std::pow((at[k].x - center.x) / size, degree - b) *
+            std::pow((at[k].y - center.y) / size, b);
+        square += v[k] * v[k];
+      }
+      const double left = reduce(unit, nunit, n, v);
+      if (left <= SAME * std::sqrt(square)) continue;
+      for (int k = 0; k < n; k++) v[k] /= left;
+      nunit++;
+    }
+
+  // the node of which most is left, again and again
+  for (; found < most; found++) {
+    double largest = NONE;
+    int best = -1;
+    for (int k = 0; k < n; k++) {
+      double left = 1.0;
+      for (int u = 0; u < nunit; u++) left -= unit[u][k] * unit[u][k];
+      if (left <= largest) continue;
+      largest = left;
+      best = k;
+    }
+    if (best < 0) break;
+    double *const v = unit[nunit];
+    for (int k = 0; k < n; k++) v[k] = k == best;
+    const double left = reduce(unit, nunit, n, v);
+    for (int k = 0; k < n; k++) s[k][found] = v[k] /= left;
+    nunit++;
+  }
+  return found;
+}
+
+// pivot, in parts of the diagonal, below which nodes do not tell a surface of second order
+constexpr double SINGULAR = 1.0e-4;
+// weight of a node at the distance r, in mean lengths of the edges at the corner: (NEAR + r^2)^-4
+constexpr double NEAR = 0.3;
+
+/** Cholesky's factors of a symmetric matrix, of which the lower half is given, in its place. False:
+ *  it is singular. */
+bool factorize(double (*A)[5])
+{
+  for (int i = 0; i < 5; i++) {
+    const double diagonal = A[i][i];
+    for (int j = 0; j <= i; j++) {
+      for (int k = 0; k < j; k++) A[i][j] -= A[i][k] * A[j][k];
+      if (j < i)
+        A[i][j] /= A[j][j];
+      else if (A[i][i] <= SINGULAR * diagonal)
+        return false;
+      else
+        A[i][i] = std::sqrt(A[i][i]);
+    }
+  }
+  return true;
+}
+
+void solve(const double (*A)[5], double *v)
+{
+  for (int i = 0; i < 5; i++) {
+    for (int k = 0; k < i; k++) v[i] -= A[i][k] * v[k];
+    v[i] /= A[i][i];
+  }
+  for (int i = 4; i >= 0; i--) {
+    for (int k = i + 1; k < 5; k++) v[i] -= A[k][i] * v[k];
+    v[i] /= A[i][i];
+  }
+}
+
+/** Slopes along x and y at a corner, as sums over the values at nodes: those of the surface of
+ *  second order through the corner that is nearest to the other nodes, the more so the closer they
+ *  are. False: the nodes do not tell such a surface. */
+bool find_slopes(const Place *at, int n, int corner, double (*slope)[PATCH_NODES])
+{
+  double P[PATCH_NODES][5], weight[PATCH_NODES], A[5][5] = {{0.0}}, size = 0.0;
+  for (int k = 0; k < 3; k++) size += 0.5 * length(at[corner], at[k]);
+  for (int a = 0; a < n; a++) {
+    const double x = (at[a].x - at[corner].x) / size, y = (at[a].y - at[corner].y) / size,
+                 values[5] = {x, y, 0.5 * x * x, 0.5 * y * y, x * y};
+    weight[a] = a == corner ? 0.0 : std::pow(NEAR + x * x + y * y, -4);
+    for (int i = 0; i < 5; i++) {
+      P[a][i] = values[i];
+      for (int j = 0; j <= i; j++) A[i][j] += weight[a] * values[i] * values[j];
+    }
+  }
+  if (!factorize(A)) return false;
+  for (int d = 0; d < 2; d++) {
+    double v[5] = {0.0};
+    v[d] = 1.0;
+    solve(A, v);
+    slope[d][corner] = 0.0;
+    for (int a = 0; a < n; a++) {
+      if (a == corner) continue;
+      double sum = 0.0;
+      for (int i = 0; i < 5; i++) sum += v[i] * P[a][i];
+      slope[d][a] = weight[a] * sum / size;
+      slope[d][corner] -= slope[d][a];
+    }
+  }
+  return true;
+}
+
+/** For n nodes, the first three of which are the corners: coefficients of the values at the nodes
+ *  that give the deviations from the mean curvature (xx yy xy and xx yy xy) along two linear
+ *  functions whose mean square is one, times the square root of LINEAR_PART. They vanish for
+ *  surfaces of second order. Returns false if the nodes do not determine the slopes at the
+ *  corners. */
+bool linear_curvatures(const Place *at, int n, double (*rows)[6])
+{
+  // at corners, and at the middles of the edges across from these, where the slope across is the
+  // mean of those at the ends, and that along the edge is that of a cubic
+  double slope[6][2][PATCH_NODES], g[3][2];
+  for (int k = 0; k < 3; k++)
+    if (!find_slopes(at, n, k, slope[k])) return false;
+  const double twice =
+      (at[1].x - at[0].x) * (at[2].y - at[0].y) - (at[2].x - at[0].x) * (at[1].y - at[0].y);
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double l = length(at[j], at[k]),
+                 u[2] = {(at[k].x - at[j].x) / l, (at[k].y - at[j].y) / l};
+    g[i][0] = (at[j].y - at[k].y) / twice;
+    g[i][1] = (at[k].x - at[j].x) / twice;
+    for (int a = 0; a < n; a++) {
+      const double mean[2] = {0.5 * (slope[j][0][a] + slope[k][0][a]),
+                              0.5 * (slope[j][1][a] + slope[k][1][a])},
+                   chord = ((a == k) - (a == j)) / l,
+                   more = 1.5 * (chord - mean[0] * u[0] - mean[1] * u[1]);
+      for (int d = 0; d < 2; d++) slope[3 + i][d][a] = mean[d] + more * u[d];
+    }
+  }
+
+  // curvatures at corners, of slopes that are of second order in the triangle
+  const double scale = std::sqrt(LINEAR_PART / 12.0);
+  for (int a = 0; a < n; a++) {
+    double c[3][3];
+    for (int i = 0; i < 3; i++) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      double b[2][2];
+      for (int d = 0; d < 2; d++)
+        for (int e = 0; e < 2; e++)
+          b[d][e] = 3.0 * g[i][e] * slope[i][d][a] - g[j][e] * slope[j][d][a] -
+              g[k][e] * slope[k][d][a] + 4.0 * g[j][e] * slope[3 + k][d][a] +
+              4.0 * g[k][e] * slope[3 + j][d][a];
+      c[i][0] = b[0][0];
+      c[i][1] = b[1][1];
+      c[i][2] = 0.5 * (b[0][1] + b[1][0]);
+    }
+    for (int m = 0; m < 3; m++) {
+      rows[a][m] = scale * (c[0][m] - c[1][m]) / std::sqrt(2.0);
+      rows[a][3 + m] = scale * (c[0][m] + c[1][m] - 2.0 * c[2][m]) / std::sqrt(6.0);
+    }
+  }
+  return true;
+}
+
 /** Append what resists short waves, or linear curvatures, to the coefficients of a patch without
  *  creases that is not at a rim; returns the number of rows. Of a node that is there twice, only
  *  the first one is known. */
 int add_above(const Unfolded &all, const bool *again, double area, bool linear,
               double (*coefficients)[BentTriangle::MOST])
 {
-  double at[PATCH_NODES][2], s[PATCH_NODES][4], changes[PATCH_NODES][6];
+  Place at[PATCH_NODES];
+  double s[PATCH_NODES][4], changes[PATCH_NODES][6];
   int node[PATCH_NODES], n = 0;
   for (int a = 0; a < PATCH_NODES; a++) {
     if (!all.has[a] || !all.smooth[a]) return 0;
     if (again[a]) continue;
-    at[n][0] = all.p[a].x;
-    at[n][1] = all.p[a].y;
+    at[n] = all.p[a];
     node[n++] = a;
   }
   const bool few = n <= FEW_NODES;
@@ -220,8 +404,6 @@ int add_above(const Unfolded &all, const bool *again, double area, bool linear,
 }
 
 }    // namespace
-
-/* ---------------------------------------------------------------------- */
 
 double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool away, bool linear,
                             int *slots)
@@ -249,7 +431,6 @@ double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool aw
 
     // the nodes of triangles at both sides of the edge and of their neighbors, and at a rim of
     // those beyond, without creases
-
     int node[PATCH_NODES], nnode = 0;
     Place at[PATCH_NODES];
     const auto use = [&](int a) {
@@ -282,7 +463,6 @@ double BentTriangle::define(const double (*X)[3], const bool *neighbors, bool aw
   }
 
   // a node that the neighbors of two neighbors share is one
-
   bool again[PATCH_NODES] = {false};
   for (int a = 3; a < PATCH_NODES; a++)
     for (int b = 0; b < a && !again[a]; b++) {

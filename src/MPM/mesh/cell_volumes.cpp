@@ -46,8 +46,6 @@ static void range(const Polygon &p, int d, int64_t &first, int64_t &last)
   last = std::max(first, (int64_t) std::ceil(hi) - 1);
 }
 
-/* ---------------------------------------------------------------------- */
-
 CellVolumes::CellVolumes(const std::vector<std::array<Point, 3>> &triangles, const double *origin,
                          const double *size, const Range *ranges)
 {
@@ -89,8 +87,8 @@ CellVolumes::CellVolumes(const std::vector<std::array<Point, 3>> &triangles, con
     std::sort(column.begin(), column.end(), [](const Entry &a, const Entry &b) {
       return a.cell < b.cell;
     });
-    for (auto n = (int) column.size() - 2; n >= 0;
-         n--)    // what all of those above have below them
+    // what all of those above have below them
+    for (auto n = (int) column.size() - 2; n >= 0; n--)
       for (int m = 0; m < 3; m++) column[n].below[m] += column[n + 1].below[m];
   }
 }
@@ -105,7 +103,6 @@ void CellVolumes::add(const Polygon &polygon, int64_t j, int64_t k)
   }
   // what is below the cells that are asked for counts in none of them, and what is above is below
   // no other
-
   const int64_t above_all = ranges[0].last + 1;
   clip(rest, 0, (double) ranges[0].first, -1.0, piece);
   rest.swap(piece);
@@ -127,11 +124,7 @@ void CellVolumes::add(const Polygon &polygon, int64_t j, int64_t k)
     auto there = std::find_if(column.begin(), column.end(), [i](const Entry &e) {
       return e.cell == i;
     });
-    if (there == column.end()) {
-      column.push_back(Entry());
-      column.back().cell = i;
-      there = column.end() - 1;
-    }
+    if (there == column.end()) there = column.insert(there, Entry{i});
     add_piece(piece, *there);
   }
 }
@@ -157,8 +150,6 @@ void CellVolumes::add_piece(const Polygon &piece, Entry &entry)
     entry.below[2] += area * sum[2] / 3.0;
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 CellVolumes::Sums CellVolumes::operator()(int64_t i, int64_t j, int64_t k) const
 {

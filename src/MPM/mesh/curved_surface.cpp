@@ -10,6 +10,7 @@
 
 #include "math/matrix.h"
 #include "mesh/gmsh.h"
+#include "mesh/vector3.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,7 @@
 #include <utility>
 
 using namespace MPM_NS;
+using namespace MPM_NS::vector3;
 
 namespace {
 
@@ -32,16 +34,6 @@ double smooth_angle(double s, double c, double *slope)
   const double rest = 1.0 - q * q * q * q;
   *slope = rest * rest - 8.0 * angle * rest * q * q * q * s / (1.0 - SHARP);
   return angle * rest * rest;
-}
-
-double norm(const double *a)
-{
-  return std::sqrt(dot(a, a));
-}
-
-void difference(const double *a, const double *b, double *to)
-{
-  for (int d = 0; d < 3; d++) to[d] = a[d] - b[d];
 }
 
 /** g += factor a. */
@@ -164,7 +156,6 @@ std::vector<double> MPM_NS::curved_areas(int dim, const Mesh &mesh,
                                          const std::function<void(int, int, double *)> &to)
 {
   // angles at edges and corners, or those that lines have on the way, by their nodes
-
   std::map<std::pair<int, int>, double> angles;
   double slope;
   for (const auto &e : mesh.elements) {

@@ -15,11 +15,21 @@
 
 using namespace MPM_NS;
 
-namespace {
+void MPM_NS::cube_functions(int dim, const double *xi, double *N, double (*dN)[3])
+{
+  for (int k = 0; k < 1 << dim; k++) {
+    double f[3] = {1.0, 1.0, 1.0};
+    for (int d = 0; d < dim; d++) f[d] = 0.5 * (1.0 + CUBE_CORNER[k][d] * xi[d]);
+    N[k] = f[0] * f[1] * f[2];
+    for (int d = 0; d < 3; d++) {
+      dN[k][d] = d < dim ? 0.5 * CUBE_CORNER[k][d] : 0.0;
+      for (int e = 0; e < dim; e++)
+        if (e != d) dN[k][d] *= f[e];
+    }
+  }
+}
 
-// corners of a square and a cube in the order of Gmsh
-constexpr int CORNER[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
-                              {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+namespace {
 
 /** Line, triangle, or tetrahedron with one point. */
 ElementRule simplex(int dim)
@@ -44,17 +54,9 @@ ElementRule cube(int dim)
   r.nnode = r.npoint = 1 << dim;
   for (int q = 0; q < r.npoint; q++) {
     r.weight[q] = 1.0;
-    for (int k = 0; k < r.nnode; k++) {
-      double f[3];
-      for (int d = 0; d < dim; d++) f[d] = 0.5 * (1.0 + CORNER[k][d] * CORNER[q][d] / sqrt(3.0));
-      r.N[q][k] = 1.0;
-      for (int d = 0; d < dim; d++) r.N[q][k] *= f[d];
-      for (int d = 0; d < dim; d++) {
-        r.dN[q][k][d] = 0.5 * CORNER[k][d];
-        for (int e = 0; e < dim; e++)
-          if (e != d) r.dN[q][k][d] *= f[e];
-      }
-    }
+    double xi[3];
+    for (int d = 0; d < 3; d++) xi[d] = CUBE_CORNER[q][d] / sqrt(3.0);
+    cube_functions(dim, xi, r.N[q], r.dN[q]);
   }
   return r;
 }
@@ -68,8 +70,6 @@ ElementRule bending(int nnode)
 }
 
 }    // namespace
-
-/* ---------------------------------------------------------------------- */
 
 const ElementRule &ElementRule::of(ElementType type)
 {

@@ -18,6 +18,13 @@ namespace MPM_NS {
 
 constexpr int MAX_ELEMENT_NODES = 8, MAX_ELEMENT_POINTS = 8;
 
+/** Corners of a square and a cube in the order of Gmsh. */
+constexpr int CUBE_CORNER[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                   {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+/** Shape functions of a square or cube and their derivatives at xi, from -1 to 1 along each
+ *  axis. */
+void cube_functions(int dim, const double *xi, double *N, double (*dN)[3]);
+
 /** Gauss points of an element in its own coordinates: one for lines, triangles, and tetrahedra, 2x2
  *  and 2x2x2 for quadrangles and hexahedra (full integration). */
 struct ElementRule {

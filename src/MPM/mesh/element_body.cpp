@@ -8,7 +8,6 @@
 #include "mesh/element_body.h"
 
 #include "mesh/gmsh.h"
-#include "mesh/shared_strain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +28,21 @@ void ElementBody::count_nodes_and_points(const Mesh &mesh)
   }
 }
 
+std::vector<int> ElementBody::choose_owners(const Mesh &mesh, int &most)
+{
+  std::vector<int> owned(mesh.nodes.size(), 0), owners;
+  for (const auto &element : mesh.elements) {
+    const int *const node = element.node,
+                     n = element.type == ElementType::PATCH ? 3 : element_nodes(element.type);
+    const int owner = *std::min_element(node, node + n, [&](int a, int b) {
+      return owned[a] < owned[b];
+    });
+    most = std::max(most, ++owned[owner]);
+    owners.push_back(owner);
+  }
+  return owners;
+}
+
 void ElementBody::set_history(int n)
 {
   nhistory = n;
@@ -36,6 +50,16 @@ void ElementBody::set_history(int n)
       std::max(maxnode * dim + maxpoint * point_size(),
                bending && along == 2 ? 1 + BentTriangle::size(bending == LINEAR) : 0) +
       (curved ? 1 : 0);
+}
+
+/** Square of the distance between two nodes of a row in the reference configuration. */
+double ElementBody::square_between(const double *r, int k, int m) const
+{
+  const double *const X = r + 2 + maxnode;
+  double square = 0.0;
+  for (int d = 0; d < dim; d++)
+    square += (X[k * dim + d] - X[m * dim + d]) * (X[k * dim + d] - X[m * dim + d]);
+  return square;
 }
 
 int ElementBody::nodes_of(const double *r) const
@@ -52,15 +76,10 @@ std::vector<NearNodes::Edge> ElementBody::edges(int64_t low) const
   for (std::size_t e = 0; e < size(); e++) {
     const double *const r = row(e);
     if (bends(r)) continue;
-    const double *const X = r + 2 + maxnode;
-    const int nnode = rule_of(r).nnode;
-    for (int k = 0; k < nnode; k++)
-      for (int m = 0; m < k; m++) {
-        double square = 0.0;
-        for (int d = 0; d < dim; d++)
-          square += (X[k * dim + d] - X[m * dim + d]) * (X[k * dim + d] - X[m * dim + d]);
-        all.push_back({(int64_t) r[2 + k] - low, (int64_t) r[2 + m] - low, sqrt(square)});
-      }
+    for (int k = 0; k < rule_of(r).nnode; k++)
+      for (int m = 0; m < k; m++)
+        all.push_back(
+            {(int64_t) r[2 + k] - low, (int64_t) r[2 + m] - low, sqrt(square_between(r, k, m))});
   }
   return all;
 }
@@ -68,14 +87,11 @@ std::vector<NearNodes::Edge> ElementBody::edges(int64_t low) const
 std::vector<ElementBody::Face> ElementBody::faces() const
 {
   std::vector<Face> all;
-  for (std::size_t e = 0; e < nodes.size() && along == dim - 1; e++) {
-    if (bends(row(e))) continue;
-    const int nnode = rule_of(row(e)).nnode;
-    for (int part = 0; part < (nnode == 4 ? 2 : 1); part++) {
+  for (std::size_t e = 0; e < nodes.size(); e++)
+    for_halves(row(e), [&](int part, int n) {
       all.push_back({(int64_t) row(e)[0], part, {}});
-      for (int m = 0; m < std::min(3, nnode); m++) all.back().node[m] = nodes[e][SPLIT[part][m]];
-    }
-  }
+      for (int m = 0; m < n; m++) all.back().node[m] = nodes[e][SPLIT[part][m]];
+    });
   return all;
 }
 
@@ -83,13 +99,10 @@ void ElementBody::add_numbered_faces(std::size_t e, int64_t low,
                                      std::vector<NumberedFace> &faces) const
 {
   const double *const r = row(e);
-  if (along != dim - 1 || bends(r)) return;
-  const int nnode = rule_of(r).nnode;
-  for (int part = 0; part < (nnode == 4 ? 2 : 1); part++) {
+  for_halves(r, [&](int part, int n) {
     faces.push_back({(int64_t) r[0], part, {}});
-    for (int m = 0; m < std::min(3, nnode); m++)
-      faces.back().node[m] = (int64_t) r[2 + SPLIT[part][m]] - low;
-  }
+    for (int m = 0; m < n; m++) faces.back().node[m] = (int64_t) r[2 + SPLIT[part][m]] - low;
+  });
 }
 
 ElementBody::Extents ElementBody::extents() const
@@ -98,19 +111,13 @@ ElementBody::Extents ElementBody::extents() const
   for (std::size_t e = 0; e < size(); e++) {
     double *const r = row(e);
     const auto &rule = rule_of(r);
-    const double *const X = r + 2 + maxnode;
     double square = 0.0, stretch = 0.0;
     if (bends(r)) {
       most.bent = std::max(most.bent, extent_of(r));
       continue;
     }
     for (int k = 0; k < rule.nnode; k++)
-      for (int j = 0; j < k; j++) {
-        double s = 0.0;
-        for (int d = 0; d < dim; d++)
-          s += (X[k * dim + d] - X[j * dim + d]) * (X[k * dim + d] - X[j * dim + d]);
-        square = std::max(square, s);
-      }
+      for (int j = 0; j < k; j++) square = std::max(square, square_between(r, k, j));
     for (int q = 0; q < rule.npoint; q++) {
       double s = 0.0;
       const double *const F = state_of(r, q);

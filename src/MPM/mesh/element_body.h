@@ -45,6 +45,9 @@ class ElementBody {
   }
   /** Finds maxnode and maxpoint. */
   void count_nodes_and_points(const Mesh &);
+  /** Chooses for each element the one of its corners that owns fewest elements so far. most: raised
+   *  to the largest number that a node owns. */
+  static std::vector<int> choose_owners(const Mesh &, int &most);
   /** Sets the length of rows for points with so many history variables. */
   void set_history(int nhistory);
 
@@ -115,7 +118,8 @@ class ElementBody {
   bool define_bending(double *row, const double (*X)[3], bool inside, int64_t &rough) const;
   /** Energy of a row, and its forces on the nodes. */
   double bend(const double *row, const double (*x)[3], double (*f)[3]) const;
-  /** Adds the sums of rows of the stiffness of bending to the nodes, numbered from the ID low on. */
+  /** Adds the sums of rows of the stiffness of bending to the nodes, numbered from the ID low
+   *  on. */
   void add_bending_sums(int64_t low, std::vector<double> &sum) const;
 
   /** Calls visit(energy, element, number of nodes, forces on them) for all parts that bend. x:
@@ -132,8 +136,8 @@ class ElementBody {
       visit(energy, e, nnode, f);
     }
   }
-  /** Calls visit(x, nodes) for the edges of a curved surface (in 2d: corners), with the positions of
-   *  their nodes relative to the first one. */
+  /** Calls visit(x, nodes) for the edges of a curved surface (in 2d: corners), with the positions
+   *  of their nodes relative to the first one. */
   template <class Visit> void for_curved_edges(const double *const *x, const Visit &visit) const
   {
     for (std::size_t e = 0; e < nodes.size() && curved; e++) {
@@ -145,6 +149,15 @@ class ElementBody {
   }
 
  private:
+  double square_between(const double *row, int k, int m) const;
+  /** Calls use(part, number of its nodes) for the element of a surface, or the two halves of a
+   *  quadrangle. */
+  template <class Use> void for_halves(const double *row, const Use &use) const
+  {
+    if (along != dim - 1 || bends(row)) return;
+    const int nnode = rule_of(row).nnode;
+    for (int part = 0; part < (nnode == 4 ? 2 : 1); part++) use(part, nnode < 3 ? nnode : 3);
+  }
   double &extent_of(double *row) const { return row[2 + maxnode]; }
   double *bent_of(const double *row) const { return const_cast<double *>(row) + 3 + maxnode; }
   BentTriangle bent_triangle(const double *row) const;

@@ -9,32 +9,29 @@
 #include "mesh/face_contact.h"
 
 #include "math/matrix.h"
+#include "mesh/vector3.h"
 
 #include <algorithm>
 #include <cmath>
 
 using namespace MPM_NS;
+using namespace MPM_NS::vector3;
 
 double MPM_NS::place_on_line(const double *a, const double *b, const double *x)
 {
   double along[3], to[3];
-  for (int d = 0; d < 3; d++) {
-    along[d] = b[d] - a[d];
-    to[d] = x[d] - a[d];
-  }
+  difference(b, a, along);
+  difference(x, a, to);
   const double square = dot(along, along);
   return square > 0.0 ? std::min(std::max(dot(along, to) / square, 0.0), 1.0) : 0.0;
 }
 
 void FacePlace::find_plane(int dim, const double *const at[3], const double *x)
 {
-  double a[3], b[3], to[3];
-  for (int d = 0; d < 3; d++) {
-    a[d] = at[1][d] - at[0][d];
-    to[d] = x[d] - at[0][d];
-    weight[d] = 0.0;
-  }
-  double square;
+  double a[3], b[3], to[3], square;
+  difference(at[1], at[0], a);
+  difference(x, at[0], to);
+  std::fill_n(weight, 3, 0.0);
   if (dim == 2) {
     normal[0] = -a[1];
     normal[1] = a[0];
@@ -42,7 +39,7 @@ void FacePlace::find_plane(int dim, const double *const at[3], const double *x)
     square = dot(normal, normal);
     weight[1] = dot(a, to) / square;
   } else {
-    for (int d = 0; d < 3; d++) b[d] = at[2][d] - at[0][d];
+    difference(at[2], at[0], b);
     cross(a, b, normal);
     square = dot(normal, normal);
     double part[3];
@@ -70,13 +67,11 @@ void FacePlace::find_rim(int dim, const double *const at[3], const double *x)
     const double s = place_on_line(at[a], at[b], x);
     double way[3];
     for (int d = 0; d < 3; d++) way[d] = x[d] - at[a][d] - s * (at[b][d] - at[a][d]);
-    const double length = std::sqrt(dot(way, way));
+    const double length = norm(way);
     if (length >= distance) continue;
     distance = length;
-    for (int d = 0; d < 3; d++) {
-      from[d] = way[d];
-      weight[d] = 0.0;
-    }
+    std::copy_n(way, 3, from);
+    std::fill_n(weight, 3, 0.0);
     weight[a] = 1.0 - s;
     weight[b] = s;
   }
@@ -89,7 +84,6 @@ void MPM_NS::find_common_parts(int dim, const std::vector<ContactFace> &faces,
   if (faces.size() < 2) return;
 
   // each edge, and each node, with the sums over faces; edges are less one of them, their mean
-
   const auto sum_equal = [&](std::size_t first) {
     const auto begin = parts.begin() + (std::ptrdiff_t) first;
     const auto key = [](const ContactPart &p) {
@@ -129,7 +123,6 @@ void MPM_NS::find_common_parts(int dim, const std::vector<ContactFace> &faces,
   sum_equal(nedge);
 
   // nodes get back what their edges have taken
-
   for (std::size_t p = nedge; p < parts.size(); p++)
     for (std::size_t e = 0; e < nedge; e++) {
       if (parts[e].node[0] != parts[p].node[0] && parts[e].node[1] != parts[p].node[0]) continue;
@@ -142,4 +135,39 @@ void MPM_NS::find_common_parts(int dim, const std::vector<ContactFace> &faces,
                                return p.share == 0.0 && p.stiffness == 0.0 && p.damping == 0.0;
                              }),
               parts.end());
+}
+
+int MPM_NS::side_of_face(int dim, const double *const at[3], const double *x, double range,
+                         double margin, bool &within)
+{
+  FacePlace place;
+  place.find_plane(dim, at, x);
+  const double least = *std::min_element(place.weight, place.weight + dim);
+  within = least >= 0.0;
+  if (!(place.distance <= range) || !(least >= -margin)) return 0;
+  return place.height >= 0.0 ? 1 : -1;
+}
+
+const Passages::Sight *Passages::look(std::vector<Sight> now)
+{
+  std::sort(now.begin(), now.end());
+  std::sort(known.begin(), known.end());
+  int64_t found = -1;
+  for (const auto &sight : now) {
+    const auto before = std::lower_bound(known.begin(), known.end(), sight);
+    if (before == known.end() || sight < *before || before->side == sight.side) continue;
+    if (sight.within || before->within) found = &sight - now.data();
+  }
+  known.swap(now);
+  return found < 0 ? nullptr : &known[found];
+}
+
+std::vector<Passages::Sight> Passages::take_others(const std::vector<FaceID> &faces)
+{
+  const auto first = std::partition(known.begin(), known.end(), [&](const Sight &sight) {
+    return std::binary_search(faces.begin(), faces.end(), FaceID(sight.body, sight.face));
+  });
+  std::vector<Sight> others(first, known.end());
+  known.erase(first, known.end());
+  return others;
 }

@@ -378,8 +378,6 @@ struct Reader {
 
 }    // namespace
 
-/* ---------------------------------------------------------------------- */
-
 Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
 {
   Mesh mesh;
@@ -441,16 +439,12 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
   return mesh;
 }
 
-/* ---------------------------------------------------------------------- */
-
 Mesh MPM_NS::read_gmsh(const std::string &file)
 {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error("cannot open the mesh file " + file);
   return read_gmsh(in, file);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void Mesh::check_repeated(const std::string &hint) const
 {
@@ -469,8 +463,6 @@ void Mesh::check_repeated(const std::string &hint) const
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 /** The numbers of what is left: place has for each the number that it gets, or -1. */
 static void keep_data(std::vector<MeshData> &data, bool at_nodes, const std::vector<int> &place)
 {
@@ -486,21 +478,17 @@ static void keep_data(std::vector<MeshData> &data, bool at_nodes, const std::vec
 void Mesh::keep(int dim, const std::string &group)
 {
   // physical groups of this dimension become sets
-
-  for (int i = 0; i < (int) elements.size() && sets.empty(); i++) {
-    const int tag = elements[i].physical;
-    if (tag == 0 || element_dimension(elements[i].type) != dim) continue;
-    std::map<int, std::size_t> known;
-    for (int k = i; k < (int) elements.size(); k++) {
-      const auto &e = elements[k];
-      if (e.physical == 0 || element_dimension(e.type) != dim) continue;
-      const auto [place, is_new] = known.emplace(e.physical, sets.size());
-      if (is_new) {
-        const auto name = groups.find({dim, e.physical});
-        sets.push_back({name == groups.end() ? std::to_string(e.physical) : name->second, {}});
-      }
-      sets[place->second].elements.push_back(k);
+  std::map<int, std::size_t> known;
+  const bool have_sets = !sets.empty();
+  for (int k = 0; k < (int) elements.size() && !have_sets; k++) {
+    const auto &e = elements[k];
+    if (e.physical == 0 || element_dimension(e.type) != dim) continue;
+    const auto [place, is_new] = known.emplace(e.physical, sets.size());
+    if (is_new) {
+      const auto name = groups.find({dim, e.physical});
+      sets.push_back({name == groups.end() ? std::to_string(e.physical) : name->second, {}});
     }
+    sets[place->second].elements.push_back(k);
   }
 
   std::vector<char> wanted(elements.size(), group.empty());
@@ -523,13 +511,13 @@ void Mesh::keep(int dim, const std::string &group)
   std::vector<int> element_place(elements.size(), -1);
   std::size_t n = 0;
   int others[4] = {0, 0, 0, 0};
-  for (std::size_t k = 0; k < elements.size(); k++)
-    if (wanted[k]) others[element_dimension(elements[k].type)]++;
-  for (std::size_t k = 0; k < elements.size(); k++)
-    if (element_dimension(elements[k].type) == dim && wanted[k]) {
-      element_place[k] = (int) n;
-      elements[n++] = elements[k];
-    }
+  for (std::size_t k = 0; k < elements.size(); k++) {
+    if (!wanted[k]) continue;
+    others[element_dimension(elements[k].type)]++;
+    if (element_dimension(elements[k].type) != dim) continue;
+    element_place[k] = (int) n;
+    elements[n++] = elements[k];
+  }
   elements.resize(n);
   if (n == 0) {
     std::string text = "the mesh has no elements of dimension " + std::to_string(dim) +
@@ -570,8 +558,6 @@ void Mesh::keep(int dim, const std::string &group)
   keep_data(data, true, place);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void Mesh::orient(int dim)
 {
   for (auto &e : elements) {
@@ -582,8 +568,6 @@ void Mesh::orient(int dim)
       std::swap(e.node[1], e.node[e.type == ElementType::QUAD ? 3 : 2]);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 double Mesh::size(const MeshElement &e) const
 {

@@ -33,7 +33,7 @@ enum class ElementType : int {
   LINE,
   PATCH,
   CORNER,    ///< two lines that meet, see BentLine
-  EDGE,      ///< two triangles that meet, see mesh/shared_strain.h
+  EDGE,      ///< two triangles that meet, see mesh/bending.h
 };
 
 /** Number of nodes of an element. */

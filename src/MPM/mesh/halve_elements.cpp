@@ -6,11 +6,12 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "mesh/gmsh.h"
+#include "mesh/element.h"
 
-#include <algorithm>
+#include "mesh/vector3.h"
 
 using namespace MPM_NS;
+using namespace MPM_NS::vector3;
 
 // children of an element by numbers of its corners and of the middles between them: a child has as
 // its corners the means of two corners of its parent, {k,k} for the corner itself; a quadrangle and
@@ -22,6 +23,8 @@ struct Children {
   int count;
   int corner[8][8][2];    // [child][corner]
 };
+
+const Children LINE = {2, {{{0, 0}, {0, 1}}, {{0, 1}, {1, 1}}}};
 
 const Children TRIANGLE = {4,
                            {{{0, 0}, {0, 1}, {0, 2}},
@@ -44,21 +47,16 @@ const Children TETRAHEDRON = {8,
 
 }    // namespace
 
-/* ----------------------------------------------------------------------
-   Corners of the child at corner c of a square or cube: for each of its own corners k, the mean of
-   the corners of the parent that agree with c, or, along axes on which k and c differ, of all
-------------------------------------------------------------------------- */
-
+/** Corners of the child at corner c of a square or cube: for each of its own corners k, the mean of
+ *  the corners of the parent that agree with c, or, along axes on which k and c differ, of all. */
 static std::array<double, 3> corner_of_child(const Mesh &mesh, const MeshElement &e, int c, int k)
 {
-  constexpr int CORNER[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                                {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  const auto &at = CUBE_CORNER;
   std::array<double, 3> x = {0.0, 0.0, 0.0};
   int n = 0;
   for (int m = 0; m < element_nodes(e.type); m++) {
     bool counts = true;
-    for (int d = 0; d < 3; d++)
-      counts = counts && (CORNER[k][d] != CORNER[c][d] || CORNER[m][d] == CORNER[c][d]);
+    for (int d = 0; d < 3; d++) counts = counts && (at[k][d] != at[c][d] || at[m][d] == at[c][d]);
     if (!counts) continue;
     for (int d = 0; d < 3; d++) x[d] += mesh.nodes[e.node[m]][d];
     n++;
@@ -76,23 +74,16 @@ void Mesh::halve_elements()
     const int n = element_nodes(e.type);
     const bool simplex = e.type == ElementType::TRIANGLE || e.type == ElementType::TETRAHEDRON ||
         e.type == ElementType::LINE;
-    static const Children line = {2, {{{0, 0}, {0, 1}}, {{0, 1}, {1, 1}}}};
-    const auto &children = e.type == ElementType::LINE ? line
+    const auto &children = e.type == ElementType::LINE ? LINE
         : e.type == ElementType::TRIANGLE              ? TRIANGLE
                                                        : TETRAHEDRON;
     for (int c = 0; c < (simplex ? children.count : n); c++) {
       MeshElement child = e;
       for (int k = 0; k < n; k++) {
-        std::array<double, 3> x;
-        if (simplex) {
-          const auto *const of = children.corner[c][k];
-          for (int d = 0; d < 3; d++)
-            x[d] = 0.5 * (nodes[e.node[of[0]]][d] + nodes[e.node[of[1]]][d]);
-        } else {
-          x = corner_of_child(*this, e, c, k);
-        }
+        const int *const of = children.corner[c][k];
         child.node[k] = (int) fine.nodes.size();
-        fine.nodes.push_back(x);
+        fine.nodes.push_back(simplex ? 0.5 * (nodes[e.node[of[0]]] + nodes[e.node[of[1]]])
+                                     : corner_of_child(*this, e, c, k));
       }
       fine.elements.push_back(child);
     }
@@ -109,10 +100,11 @@ void Mesh::halve_elements()
   for (const auto &one : data) {
     if (one.at_nodes) continue;
     fine.data.push_back({one.name, false, one.width, {}});
+    auto &values = fine.data.back().values;
     for (std::size_t k = 0; k < elements.size(); k++)
       for (int c = first_child[k]; c < first_child[k + 1]; c++)
-        fine.data.back().values.insert(fine.data.back().values.end(), &one.values[k * one.width],
-                                       &one.values[k * one.width] + one.width);
+        values.insert(values.end(), &one.values[k * one.width],
+                      &one.values[k * one.width] + one.width);
   }
   *this = std::move(fine);
 }

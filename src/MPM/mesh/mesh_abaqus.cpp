@@ -7,6 +7,7 @@
 ------------------------------------------------------------------------- */
 
 #include "mesh/mesh_file.h"
+#include "mesh/vector3.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include <unordered_map>
 
 using namespace MPM_NS;
+using namespace MPM_NS::vector3;
 
 namespace {
 
@@ -119,6 +121,20 @@ class AbaqusReader {
     if (words.back().empty()) words.pop_back();    // a comma at the end of a line
     return words;
   }
+  /** What has this name in a list, in upper or lower case; its end: nothing. */
+  template <class List> static auto find_named(List &list, const std::string &name)
+  {
+    return std::find_if(list.begin(), list.end(), [&](const auto &each) {
+      return upper(each.name) == upper(name);
+    });
+  }
+  double real(const std::string &word, const std::string &what) const
+  {
+    char *end;
+    const double value = strtod(word.c_str(), &end);
+    if (word.empty() || *end || !std::isfinite(value)) fail("'" + word + "' is not " + what);
+    return value;
+  }
   int64_t integer(const std::string &word) const
   {
     char *end;
@@ -210,10 +226,9 @@ class AbaqusReader {
 
   static int number_of(Mesh &mesh, const std::string &of)
   {
-    for (std::size_t k = 0; k < mesh.sets.size(); k++)
-      if (upper(mesh.sets[k].name) == upper(of)) return (int) k;
-    mesh.sets.push_back({of, {}});
-    return (int) mesh.sets.size() - 1;
+    const auto found = find_named(mesh.sets, of) - mesh.sets.begin();
+    if (found == (std::ptrdiff_t) mesh.sets.size()) mesh.sets.push_back({of, {}});
+    return (int) found;
   }
 
   void node(const std::string &text)
@@ -221,12 +236,8 @@ class AbaqusReader {
     const auto words = split(text);
     if (words.size() < 3) fail("a node needs a number and two or three coordinates");
     std::array<double, 3> x = {0.0, 0.0, 0.0};
-    for (std::size_t d = 0; d < 3 && d + 1 < words.size(); d++) {
-      char *end;
-      x[d] = strtod(words[d + 1].c_str(), &end);
-      if (words[d + 1].empty() || *end || !std::isfinite(x[d]))
-        fail("'" + words[d + 1] + "' is not a coordinate");
-    }
+    for (std::size_t d = 0; d < 3 && d + 1 < words.size(); d++)
+      x[d] = real(words[d + 1], "a coordinate");
     auto &mine = parts[now];
     if (!mine.node_place.emplace(integer(words[0]), (int) mine.mesh.nodes.size()).second)
       fail("node " + words[0] + " is defined twice: put parts between *PART and *END PART");
@@ -282,12 +293,8 @@ class AbaqusReader {
     auto &mine = instances.back();
     const std::size_t most = mine.lines.empty() ? 3 : 7;
     std::vector<double> numbers;
-    for (const auto &word : split(text)) {
-      char *end;
-      numbers.push_back(strtod(word.c_str(), &end));
-      if (word.empty() || *end || !std::isfinite(numbers.back()))
-        fail("'" + word + "' is not a number of where the instance " + mine.name + " is");
-    }
+    for (const auto &word : split(text))
+      numbers.push_back(real(word, "a number of where the instance " + mine.name + " is"));
     if (mine.lines.size() == 2 || numbers.size() > most || (most == 7 && numbers.size() != 7))
       fail("the instance " + mine.name +
            " needs three numbers of its translation, and may have seven of a rotation");
@@ -300,9 +307,8 @@ class AbaqusReader {
 
   Part *find_part(const std::string &of)
   {
-    for (std::size_t k = 1; k < parts.size(); k++)
-      if (upper(parts[k].name) == upper(of)) return &parts[k];
-    return nullptr;
+    const auto found = find_named(parts, of);    // what is outside of parts has no name
+    return found == parts.end() ? nullptr : &*found;
   }
 
   /** A node of a part at its place in the assembly: moved, and then turned around an axis by an
@@ -313,14 +319,11 @@ class AbaqusReader {
     for (int d = 0; d < 3; d++) x[d] += of.lines[0][d];
     if (of.lines.size() == 1) return x;
     const auto &turn = of.lines[1];
-    double axis[3], from[3], length = 0.0;
-    for (int d = 0; d < 3; d++) {
-      axis[d] = turn[3 + d] - turn[d];
-      from[d] = x[d] - turn[d];
-      length += axis[d] * axis[d];
-    }
-    double along = 0.0;
-    for (int d = 0; d < 3; d++) along += (axis[d] /= std::sqrt(length)) * from[d];
+    double axis[3], from[3], along = 0.0;
+    difference(&turn[3], &turn[0], axis);
+    difference(x.data(), &turn[0], from);
+    const double length = norm(axis);
+    for (int d = 0; d < 3; d++) along += (axis[d] /= length) * from[d];
     const double angle = turn[6] * std::acos(-1.0) / 180.0, c = std::cos(angle),
                  sine = std::sin(angle);
     for (int d = 0; d < 3; d++) {
@@ -364,9 +367,7 @@ class AbaqusReader {
     }
     for (const auto &set : of_assembly) {
       line = set.line;
-      const auto of = std::find_if(instances.begin(), instances.end(), [&](const Instance &each) {
-        return upper(each.name) == upper(set.instance);
-      });
+      const auto of = find_named(instances, set.instance);
       if (of == instances.end()) fail("there is no instance " + set.instance);
       const Part *const part = find_part(of->part);
       add_to_set(mesh, set.name, members_of(set, part->mesh, &part->element_place),
@@ -393,9 +394,7 @@ class AbaqusReader {
         if (found != elements->end()) all.push_back(found->second);
         continue;    // else an element that was left out
       }
-      const auto known = std::find_if(of.sets.begin(), of.sets.end(), [&](const MeshSet &each) {
-        return upper(each.name) == upper(word);
-      });
+      const auto known = find_named(of.sets, word);
       if (known == of.sets.end())
         fail("the set " + from.name + " has the set '" + word + "', which is not defined before");
       all.insert(all.end(), known->elements.begin(), known->elements.end());

@@ -13,7 +13,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <sstream>
+#include <limits>
+#include <map>
 #include <stdexcept>
 
 using namespace MPM_NS;
@@ -56,7 +57,7 @@ class VtkCells {
       mesh.nodes.push_back({x[3 * k], x[3 * k + 1], x[3 * k + 2]});
     }
   }
-  Mesh made()
+  Mesh finish()
   {
     if (mesh.nodes.empty() || types.empty()) fail("the file has no points or no cells");
     make_elements();
@@ -75,22 +76,17 @@ class VtkCells {
       const int type = (int) types[k];
       element_of.push_back(-1);
       if (type == 1 || type == 2 || type == 4) continue;    // points, and lines of several parts
-      MeshElement e = {ElementType::TRIANGLE, 0, k, {0, 0, 0, 0, 0, 0, 0, 0}};
-      if (type == 3)
-        e.type = ElementType::LINE;
-      else if (type == 5)
-        e.type = ElementType::TRIANGLE;
-      else if (type == 8 || type == 9)
-        e.type = ElementType::QUAD;
-      else if (type == 10)
-        e.type = ElementType::TETRAHEDRON;
-      else if (type == 11 || type == 12)
-        e.type = ElementType::HEXAHEDRON;
-      else
+      static const std::map<int, ElementType> supported = {
+          {3, ElementType::LINE},         {5, ElementType::TRIANGLE},
+          {8, ElementType::QUAD},         {9, ElementType::QUAD},
+          {10, ElementType::TETRAHEDRON}, {11, ElementType::HEXAHEDRON},
+          {12, ElementType::HEXAHEDRON}};
+      const auto found = supported.find(type);
+      if (found == supported.end())
         fail("cell " + std::to_string(k) + " is of VTK's type " + std::to_string(type) +
              ", which is not supported: only lines, triangles, quadrangles, tetrahedra, and "
-             "hexahedra of "
-             "first order are");
+             "hexahedra of first order are");
+      MeshElement e = {found->second, 0, k, {0, 0, 0, 0, 0, 0, 0, 0}};
       if (n != element_nodes(e.type) || first < 0 || first + n > (int64_t) cells.size())
         fail("cell " + std::to_string(k) + " has a wrong number of points");
       for (int j = 0; j < n; j++) {
@@ -132,16 +128,15 @@ class VtkReader : private VtkCells {
 
   Mesh read()
   {
-    std::string line, word;
-    std::getline(in, line);    // version, known
-    std::getline(in, line);    // title
-    word = need();
+    skip_line();    // version, known
+    skip_line();    // title
+    std::string word = need();
     if (word != "ASCII" && word != "BINARY") fail("'" + word + "' is neither ASCII nor BINARY");
     binary = word == "BINARY";
     if (need() != "DATASET" || need() != "UNSTRUCTURED_GRID")
       fail("only DATASET UNSTRUCTURED_GRID can be read");
     while (in >> word) section(word);
-    return made();
+    return finish();
   }
 
  private:
@@ -164,11 +159,7 @@ class VtkReader : private VtkCells {
     if (*end || value < 0 || value > MAX_COUNT) fail("'" + word + "' is not a count");
     return value;
   }
-  void skip_line()
-  {
-    std::string line;
-    std::getline(in, line);
-  }
+  void skip_line() { in.ignore(std::numeric_limits<std::streamsize>::max(), '\n'); }
 
   /** Binary numbers begin after the line of their type, and have the most significant byte
    *  first. */
@@ -186,40 +177,35 @@ class VtkReader : private VtkCells {
   }
   std::vector<double> numbers(const std::string &type, int64_t n)
   {
+    using Read = double (VtkReader::*)();
+    static const std::map<std::string, Read> readers = {
+        {"float", &VtkReader::number_as<float>},
+        {"double", &VtkReader::number_as<double>},
+        {"int", &VtkReader::number_as<int32_t>},
+        {"vtktypeint32", &VtkReader::number_as<int32_t>},
+        {"unsigned_int", &VtkReader::number_as<uint32_t>},
+        {"long", &VtkReader::number_as<int64_t>},
+        {"vtktypeint64", &VtkReader::number_as<int64_t>},
+        {"vtkIdType", &VtkReader::number_as<int64_t>},
+        {"short", &VtkReader::number_as<int16_t>},
+        {"unsigned_char", &VtkReader::number_as<uint8_t>},
+        {"char", &VtkReader::number_as<int8_t>},
+        {"signed_char", &VtkReader::number_as<int8_t>}};
+    const auto reader = readers.find(type);
     std::vector<double> all;
     if (binary) skip_line();
     for (int64_t k = 0; k < n; k++) {
-      double value;
-      if (!binary) {
-        const std::string word = need();
-        char *end;
-        value = strtod(word.c_str(), &end);
-        if (*end) fail("'" + word + "' is not a number");
-      } else if (type == "float")
-        value = number_as<float>();
-      else if (type == "double")
-        value = number_as<double>();
-      else if (type == "int" || type == "vtktypeint32")
-        value = number_as<int32_t>();
-      else if (type == "unsigned_int")
-        value = number_as<uint32_t>();
-      else if (type == "long" || type == "vtktypeint64" || type == "vtkIdType")
-        value = number_as<int64_t>();
-      else if (type == "short")
-        value = number_as<int16_t>();
-      else if (type == "unsigned_char")
-        value = number_as<uint8_t>();
-      else if (type == "char" || type == "signed_char")
-        value = number_as<int8_t>();
-      else
-        fail("numbers of type " + type + " are not supported");
-      all.push_back(value);
+      if (binary) {
+        if (reader == readers.end()) fail("numbers of type " + type + " are not supported");
+        all.push_back((this->*reader->second)());
+        continue;
+      }
+      const std::string word = need();
+      char *end;
+      all.push_back(strtod(word.c_str(), &end));
+      if (*end) fail("'" + word + "' is not a number");
     }
     return all;
-  }
-  std::vector<int64_t> integers(const std::string &type, int64_t n)
-  {
-    return whole(numbers(type, n));
   }
 
   void section(const std::string &word)
@@ -238,16 +224,16 @@ class VtkReader : private VtkCells {
         in.clear();
         in.seekg(after);
         need();
-        offsets = integers(need(), n);
+        offsets = whole(numbers(need(), n));
         if (need() != "CONNECTIVITY") fail("CONNECTIVITY is missing");
-        cells = integers(need(), size);
+        cells = whole(numbers(need(), size));
         ncells = n - 1;
         if (ncells < 0 || offsets[0] != 0 || offsets[ncells] != size)
           fail("offsets of cells are wrong");
       } else {
         in.clear();
         in.seekg(at);
-        const auto raw = integers("int", size);
+        const auto raw = whole(numbers("int", size));
         ncells = n;
         offsets.assign(1, 0);
         for (int64_t k = 0; k < size;) {
@@ -260,7 +246,7 @@ class VtkReader : private VtkCells {
           fail("the list of cells has not as many as it says");
       }
     } else if (word == "CELL_TYPES")
-      types = integers("int", count());
+      types = whole(numbers("int", count()));
     else if (word == "POINT_DATA" || word == "CELL_DATA") {
       at_nodes = word == "POINT_DATA";
       ndata = count();
@@ -332,7 +318,7 @@ class VtuReader : private VtkCells {
       mesh.data.push_back({array.name, true, array.width, array.values});
     for (const auto &array : xml.section("CellData", ncells))
       of_cells.push_back({array.name, false, array.width, array.values});
-    return made();
+    return finish();
   }
 
  private:

@@ -28,7 +28,6 @@ NearNodes::NearNodes(int64_t nnodes, const std::vector<Edge> &edges, double leng
   }
 
   // shortest paths from each node (E.W. Dijkstra, Numer. Math. 1 (1959) 269), as far as they matter
-
   start.push_back(0);
   for (int64_t i = 0; i < nnodes; i++) {
     std::map<int64_t, double> found;

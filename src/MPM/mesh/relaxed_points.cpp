@@ -13,11 +13,6 @@
 
 using namespace MPM_NS;
 
-RelaxedPoints::RelaxedPoints(int dim, const Place &n, const std::array<bool, 3> &periodic) :
-    dim(dim), n(n), periodic(periodic)
-{
-}
-
 void RelaxedPoints::add_point(const double *x, double share)
 {
   Point point = {{0, 0, 0}, share};
@@ -49,10 +44,7 @@ void RelaxedPoints::add_site(const Place &at, int m, const std::vector<char> &so
   sites.push_back(site);
 }
 
-/* ----------------------------------------------------------------------
-   points in reach of a site
-------------------------------------------------------------------------- */
-
+/** Points in reach of a site. */
 void RelaxedPoints::sort_points()
 {
   order.clear();
@@ -127,11 +119,8 @@ bool RelaxedPoints::find_near(const Site &site, std::vector<Near> &near) const
   return false;
 }
 
-/* ----------------------------------------------------------------------
-   Samples to the points that they are nearest to: boxes of samples are halved until few points can
-   be that of any of them
-------------------------------------------------------------------------- */
-
+/** Samples to the points that they are nearest to: boxes of samples are halved until few points can
+ *  be that of any of them. */
 void RelaxedPoints::share_samples(const Site &site, const Box &box, const Near *begin,
                                   const Near *end)
 {
@@ -204,10 +193,7 @@ void RelaxedPoints::share_box(const Site &site, const Box &box, std::vector<Near
   near.resize(end);
 }
 
-/* ----------------------------------------------------------------------
-   cells of all points, and their sums over all processes
-------------------------------------------------------------------------- */
-
+/** Cells of all points, and their sums over all processes. */
 void RelaxedPoints::find_cells(const Sum &sum)
 {
   sort_points();

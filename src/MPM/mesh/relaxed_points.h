@@ -42,7 +42,10 @@ class RelaxedPoints {
 
   /** The lattice has sites 0 to n - 1 along each axis; in 2d there is one along z. periodic: site n
    *  is site 0 again. */
-  RelaxedPoints(int dim, const Place &n, const std::array<bool, 3> &periodic);
+  RelaxedPoints(int dim, const Place &n, const std::array<bool, 3> &periodic) :
+      dim(dim), n(n), periodic(periodic)
+  {
+  }
 
   /** Adds a point at x, in sites. share: the share of the volume that it should have, relative to
    *  the shares of the others. Must be the same on all processes. */

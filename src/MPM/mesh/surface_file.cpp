@@ -33,8 +33,6 @@ static std::string lower_case(std::string text)
   return text;
 }
 
-/* ---------------------------------------------------------------------- */
-
 static std::vector<Point> read_stl(const std::string &bytes, const std::string &name)
 {
   std::vector<Point> soup;
@@ -82,8 +80,6 @@ static std::vector<Point> read_stl(const std::string &bytes, const std::string &
   if (!ended) fail(name, " ends without 'endsolid', it may have been cut short");
   return soup;
 }
-
-/* ---------------------------------------------------------------------- */
 
 namespace {
 
@@ -191,8 +187,6 @@ class ObjReader {
 };
 
 }    // namespace
-
-/* ---------------------------------------------------------------------- */
 
 std::vector<Point> MPM_NS::read_surface(const std::string &bytes, const std::string &name)
 {

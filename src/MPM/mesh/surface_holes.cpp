@@ -8,6 +8,7 @@
 
 #include "mesh/surface_holes.h"
 
+#include "math/sets.h"
 #include "mesh/vector3.h"
 
 #include <algorithm>
@@ -122,12 +123,9 @@ std::size_t turn_around(const Corners &corners, Triangles &triangles)
 
 }    // namespace
 
-/* ----------------------------------------------------------------------
-   The edges that triangles run along more often in one direction than in the other are the boundary
-   of the surface, which has none itself: a cone over each part of it closes the surface, whatever
-   it looks like
-------------------------------------------------------------------------- */
-
+/** The edges that triangles run along more often in one direction than in the other are the
+ *  boundary of the surface, which has none itself: a cone over each part of it closes the surface,
+ *  whatever it looks like. */
 SurfaceHoles MPM_NS::patch_surface(Corners &corners, Triangles &triangles)
 {
   SurfaceHoles found;
@@ -152,14 +150,8 @@ SurfaceHoles MPM_NS::patch_surface(Corners &corners, Triangles &triangles)
   found.edges = open.size();
 
   // holes: edges that hang together
-
-  std::map<int, int> parent;
-  const auto root = [&](int i) {
-    parent.emplace(i, i);
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const auto &edge : open) parent[root(edge.a)] = root(edge.b);
+  Sets connected(corners.size());
+  for (const auto &edge : open) connected.join(edge.a, edge.b);
   struct Hole {
     Vector lo, hi, sum = {0.0, 0.0, 0.0};
     double length = 0.0;
@@ -168,7 +160,7 @@ SurfaceHoles MPM_NS::patch_surface(Corners &corners, Triangles &triangles)
   std::map<int, Hole> holes;
   for (const auto &edge : open) {
     const Vector &a = corners[edge.a], &b = corners[edge.b];
-    const auto [place, is_new] = holes.emplace(root(edge.a), Hole());
+    const auto [place, is_new] = holes.emplace(connected.root(edge.a), Hole());
     Hole &hole = place->second;
     if (is_new) hole.lo = hole.hi = a;
     include(a, hole.lo, hole.hi);
@@ -189,7 +181,7 @@ SurfaceHoles MPM_NS::patch_surface(Corners &corners, Triangles &triangles)
   double patches = 0.0;
   for (const auto &edge : open)
     for (int k = 0; k < edge.times; k++) {
-      triangles.push_back({edge.b, edge.a, holes[root(edge.a)].center});
+      triangles.push_back({edge.b, edge.a, holes[connected.root(edge.a)].center});
       patches += area_of(corners, triangles.back());
     }
   found.area = area > 0.0 ? patches / area : 0.0;

@@ -37,6 +37,13 @@ static double square_of_distance(const Point &x, const Point &lo, const Point &h
 
 namespace {
 
+std::string describe(const Point &x)
+{
+  std::ostringstream text;
+  text << x[0] << " " << x[1] << " " << x[2];
+  return text.str();
+}
+
 /** Farther than anything, and its square is still a number. */
 constexpr double FAR_AWAY = 1.0e150;
 /** Sets with numbers, in the order in which they are asked for. */
@@ -47,8 +54,6 @@ struct NumberedSets : Sets {
   int number(int i) { return numbers.emplace(root(i), (int) numbers.size()).first->second; }
 };
 }    // namespace
-
-/* ---------------------------------------------------------------------- */
 
 SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, double scale,
                          const Point &shift, const SurfaceOptions &options)
@@ -99,12 +104,15 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
 
 SurfaceMesh::~SurfaceMesh() = default;
 
+std::array<Point, 3> SurfaceMesh::places(const Triangle &t) const
+{
+  return {corners[t.corner[0]], corners[t.corner[1]], corners[t.corner[2]]};
+}
+
 std::vector<std::array<Point, 3>> SurfaceMesh::soup() const
 {
   std::vector<std::array<Point, 3>> all;
-  all.reserve(triangles.size());
-  for (const auto &t : triangles)
-    all.push_back({corners[t.corner[0]], corners[t.corner[1]], corners[t.corner[2]]});
+  for (const auto &t : triangles) all.push_back(places(t));
   return all;
 }
 
@@ -112,33 +120,26 @@ std::vector<std::array<Point, 3>> SurfaceMesh::soup() const
 void SurfaceMesh::patch()
 {
   std::vector<std::array<int, 3>> numbers;
-  for (const auto &t : triangles) numbers.push_back({t.corner[0], t.corner[1], t.corner[2]});
+  for (const auto &t : triangles) numbers.push_back(t.corner);
   holes = patch_surface(corners, numbers);
   triangles.assign(numbers.size(), Triangle());
-  for (std::size_t i = 0; i < numbers.size(); i++)
-    std::copy(numbers[i].begin(), numbers[i].end(), triangles[i].corner);
+  for (std::size_t i = 0; i < numbers.size(); i++) triangles[i].corner = numbers[i];
 }
 
 void SurfaceMesh::find_winding(const std::string &name)
 {
   double area = 0.0;
-  std::vector<std::array<int, 3>> numbers;
-  for (const auto &t : triangles) {
-    numbers.push_back({t.corner[0], t.corner[1], t.corner[2]});
-    const Point &a = corners[t.corner[0]];
-    area += 0.5 * norm(cross(corners[t.corner[1]] - a, corners[t.corner[2]] - a));
-  }
+  for (const auto &[a, b, c] : soup()) area += 0.5 * norm(cross(b - a, c - a));
   if (!(2.0 * volume > near * area))
     throw std::runtime_error("The surface of file " + name +
                              " has no volume inside of it, also with patches on its holes");
-  winding = std::make_unique<WindingNumber>(corners, numbers);
+  winding = std::make_unique<WindingNumber>(soup());
 }
 
 /** Corners at the same place become one; triangles without area go. */
 void SurfaceMesh::weld(const std::vector<Point> &soup, const std::string &name)
 {
-  const Point size = hi - lo;
-  near = 1.0e-6 * std::sqrt(dot(size, size));
+  near = 1.0e-6 * norm(hi - lo);
   if (!(near > 0.0)) throw std::runtime_error("File " + name + ": all corners are at one place");
 
   std::unordered_map<uint64_t, std::vector<int>> places;    // corners by cells of the size near
@@ -170,9 +171,8 @@ void SurfaceMesh::weld(const std::vector<Point> &soup, const std::string &name)
   }
   for (std::size_t i = 0; i + 2 < number.size(); i += 3) {
     Triangle t;
-    for (int c = 0; c < 3; c++) t.corner[c] = number[i + c];
-    if (t.corner[0] != t.corner[1] && t.corner[1] != t.corner[2] && t.corner[2] != t.corner[0])
-      triangles.push_back(t);
+    const auto &[a, b, c] = t.corner = {number[i], number[i + 1], number[i + 2]};
+    if (a != b && b != c && c != a) triangles.push_back(t);
   }
 }
 
@@ -191,12 +191,10 @@ void SurfaceMesh::close(const std::string &name)
     example = 0.5 * (corners[edge.first.first] + corners[edge.first.second]);
   }
   if (!open) return;
-  std::ostringstream text;
-  text << "The surface of file " << name << " is not closed, or its triangles do not all look "
-       << "outward: " << open << " of " << edges.size() << " edges, one of them at " << example[0]
-       << " " << example[1] << " " << example[2]
-       << "; repair the mesh, or fill it as it is (surface leaky)";
-  throw std::runtime_error(text.str());
+  throw std::runtime_error(
+      "The surface of file " + name + " is not closed, or its triangles do not all look outward: " +
+      std::to_string(open) + " of " + std::to_string(edges.size()) + " edges, one of them at " +
+      describe(example) + "; repair the mesh, or fill it as it is (surface leaky)");
 }
 
 /** Volume, center, inertia: sums over the tetrahedra of the triangles and one point. */
@@ -206,8 +204,8 @@ void SurfaceMesh::integrate()
   double first[3] = {0.0, 0.0, 0.0}, second[3][3] = {{0.0}};
   volume = 0.0;
   for (const auto &t : triangles) {
-    Point p[3];
-    for (int c = 0; c < 3; c++) p[c] = corners[t.corner[c]] - origin;
+    auto p = places(t);
+    for (auto &x : p) x = x - origin;
     const double V = dot(p[0], cross(p[1], p[2])) / 6.0;
     volume += V;
     for (int i = 0; i < 3; i++) {
@@ -231,21 +229,17 @@ void SurfaceMesh::integrate()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void SurfaceMesh::normals()
 {
   corner_normals.assign(corners.size(), {0.0, 0.0, 0.0});
   for (auto &t : triangles) {
-    const Point *p[3];
-    for (int c = 0; c < 3; c++) p[c] = &corners[t.corner[c]];
-    const Point n = cross(*p[1] - *p[0], *p[2] - *p[0]);
-    const double length = std::sqrt(dot(n, n));
+    const auto p = places(t);
+    const Point n = cross(p[1] - p[0], p[2] - p[0]);
+    const double length = norm(n);
     t.normal = (length > 0.0 ? 1.0 / length : 0.0) * n;
     for (int c = 0; c < 3; c++) {
-      const Point a = *p[(c + 1) % 3] - *p[c], b = *p[(c + 2) % 3] - *p[c];
-      const Point ab = cross(a, b);
-      const double angle = std::atan2(std::sqrt(dot(ab, ab)), dot(a, b));
+      const Point a = p[(c + 1) % 3] - p[c], b = p[(c + 2) % 3] - p[c];
+      const double angle = std::atan2(norm(cross(a, b)), dot(a, b));
       auto &corner = corner_normals[t.corner[c]];
       corner = corner + angle * t.normal;
     }
@@ -284,30 +278,19 @@ std::vector<SurfaceMesh::Shell> SurfaceMesh::find_shells() const
   std::vector<Shell> shells(1 + *std::max_element(shell_of.begin(), shell_of.end()));
   for (int i = 0; i < (int) triangles.size(); i++) {
     Shell &shell = shells[shell_of[triangles[i].part]];
-    Point p[3];
-    for (int c = 0; c < 3; c++) p[c] = corners[triangles[i].corner[c]];
+    const auto p = places(triangles[i]);
     if (shell.triangles.empty()) shell.lo = shell.hi = p[0];
     for (const auto &x : p) include(x, shell.lo, shell.hi);
     const Point out = cross(p[1] - p[0], p[2] - p[0]);
     shell.volume += dot(p[0] - origin, out) / 6.0;
-    shell.area += 0.5 * std::sqrt(dot(out, out));
+    shell.area += 0.5 * norm(out);
     shell.triangles.push_back(i);
   }
   return shells;
 }
 
-/* ----------------------------------------------------------------------
-   Volumes add up, and the sign of the closest triangle tells inside from outside, only if closed
-   parts do not reach into each other and look outward, or inward as the walls of cavities
-------------------------------------------------------------------------- */
-
-static std::string describe(const Point &x)
-{
-  std::ostringstream text;
-  text << x[0] << " " << x[1] << " " << x[2];
-  return text.str();
-}
-
+/** Volumes add up, and the sign of the closest triangle tells inside from outside, only if closed
+ *  parts do not reach into each other and look outward, or inward as the walls of cavities. */
 void SurfaceMesh::check_shells(const std::string &name) const
 {
   const auto shells = find_shells();
@@ -329,12 +312,9 @@ void SurfaceMesh::check_shells(const std::string &name) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   Is a closed part inside of another one? Its edges are followed in steps as long as the distance.
-   What is known of a corner, a distance that it has at least, with the sign, tells of edges that
-   are shorter
-------------------------------------------------------------------------- */
-
+/** Is a closed part inside of another one? Its edges are followed in steps as long as the distance.
+ *  What is known of a corner, a distance that it has at least, with the sign, tells of edges that
+ *  are shorter. */
 bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::string &name) const
 {
   const auto elsewhere = [&](const Point &low, const Point &high) {
@@ -357,7 +337,7 @@ bool SurfaceMesh::is_inside(const Shell &shell, const Shell &other, const std::s
       const Point &a = corners[first], &b = corners[last];
       Point low = a, high = a, closest;
       include(b, low, high);
-      const double length = std::sqrt(dot(b - a, b - a));
+      const double length = norm(b - a);
       if (elsewhere(low, high)) {
         outside = true;
         continue;
@@ -409,13 +389,7 @@ int SurfaceMesh::build(int first, int last)
   for (int i = first; i < last; i++)
     if (triangles[i].part != node.part) node.part = -1;
   if (last - first > LEAF) {
-    const Point size = high - low;
-    const int axis = (int) (std::max_element(size.begin(), size.end()) - size.begin());
-    const int middle = (first + last) / 2;
-    std::nth_element(triangles.begin() + first, triangles.begin() + middle,
-                     triangles.begin() + last, [&](const Triangle &a, const Triangle &b) {
-                       return center_of(a)[axis] < center_of(b)[axis];
-                     });
+    const int middle = halve(triangles, first, last, low, high, center_of);
     node.last = -1;
     node.child[0] = build(first, middle);
     node.child[1] = build(middle, last);
@@ -424,14 +398,11 @@ int SurfaceMesh::build(int first, int last)
   return me;
 }
 
-/* ----------------------------------------------------------------------
-   closest point of a triangle (a, b, c) to x; feature: 0 face, 1 to 3 edges ab, bc, ca, 4 to 6
-   corners. The regions of the plane are told apart by the signs of barycentric products
-------------------------------------------------------------------------- */
-
-Point SurfaceMesh::closest_on(const int corner[3], const Point &x, int &feature) const
+/** Closest point of a triangle (a, b, c) to x; feature: 0 face, 1 to 3 edges ab, bc, ca, 4 to 6
+ *  corners. The regions of the plane are told apart by the signs of barycentric products. */
+Point SurfaceMesh::closest_on(const Triangle &t, const Point &x, int &feature) const
 {
-  const Point &a = corners[corner[0]], &b = corners[corner[1]], &c = corners[corner[2]];
+  const Point &a = corners[t.corner[0]], &b = corners[t.corner[1]], &c = corners[t.corner[2]];
   const Point ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
   const double d1 = dot(ab, ax), d2 = dot(ac, ax), d3 = dot(ab, bx), d4 = dot(ac, bx),
                d5 = dot(ab, cx), d6 = dot(ac, cx);
@@ -453,12 +424,9 @@ Point SurfaceMesh::closest_on(const int corner[3], const Point &x, int &feature)
   return a + (vb * inverse) * ab + (vc * inverse) * ac;
 }
 
-/* ----------------------------------------------------------------------
-   calls visit(triangle, its closest point, feature, square of its distance) for triangles in boxes
-   whose square of the distance is below limit, near ones first, but not for those of parts where
-   skip(part) is true; visit() may lower the limit
-------------------------------------------------------------------------- */
-
+/** Calls visit(triangle, its closest point, feature, square of its distance) for triangles in boxes
+ *  whose square of the distance is below limit, near ones first, but not for those of parts where
+ *  skip(part) is true; visit() may lower the limit. */
 template <class Skip, class Visit>
 void SurfaceMesh::search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const
 {
@@ -480,7 +448,7 @@ void SurfaceMesh::search(const Point &x, double &limit, Skip &&skip, Visit &&vis
       const Triangle &t = triangles[i];
       if (skip(t.part)) continue;
       int feature;
-      const Point p = closest_on(t.corner, x, feature);
+      const Point p = closest_on(t, x, feature);
       const Point r = x - p;
       const double square = dot(r, r);
       if (square < limit) visit(t, p, feature, square);
@@ -499,8 +467,6 @@ const Point &SurfaceMesh::mean_normal(const Triangle &t, int feature) const
 static const auto no_part = [](int) {
   return false;
 };
-
-/* ---------------------------------------------------------------------- */
 
 /** limit: the square of the distance is known to be less. */
 template <class Skip>
@@ -521,8 +487,6 @@ double SurfaceMesh::distance(const Point &x, Point &closest) const
   return distance_to(x, limit * limit, closest, no_part);
 }
 
-/* ---------------------------------------------------------------------- */
-
 double SurfaceMesh::distance_within(const Point &x, double cutoff, Point &closest, int &start) const
 {
   const double known = bound(x);
@@ -530,7 +494,7 @@ double SurfaceMesh::distance_within(const Point &x, double cutoff, Point &closes
   double smallest = cutoff * cutoff;
   if (start >= 0) {
     int unused;
-    const Point r = x - closest_on(triangles[start].corner, x, unused);
+    const Point r = x - closest_on(triangles[start], x, unused);
     // the tree comes to this triangle again, unless another one is closer
     smallest = std::min(smallest, dot(r, r) * (1.0 + 1.0e-9) + 1.0e-3 * near * near);
   }
@@ -550,8 +514,6 @@ double SurfaceMesh::distance_within(const Point &x, double cutoff, Point &closes
   const double d = found ? std::sqrt(smallest) : cutoff;
   return side < 0.0 ? -d : d;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
 {
@@ -580,7 +542,7 @@ double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
   for (const auto &c : candidates) {
     if (!(c.square < limit)) continue;
     Point out = d > near ? side * (x - c.point) : c.triangle->normal;
-    const double size = std::sqrt(dot(out, out));
+    const double size = norm(out);
     if (!(size > 0.0)) continue;    // a sliver
     out = (1.0 / size) * out;
     // triangles of one face, or with a common edge or corner
@@ -591,7 +553,7 @@ double SurfaceMesh::distance_and_normal(const Point &x, Point &normal) const
     found.push_back(out);
     normal = normal + out;
   }
-  const double length = std::sqrt(dot(normal, normal)), least = 1.0e-3 * (double) found.size();
+  const double length = norm(normal), least = 1.0e-3 * (double) found.size();
   normal = (length > least ? 1.0 / length : 0.0) * normal;
   return side * d;
 }
@@ -603,16 +565,14 @@ bool SurfaceMesh::is_closest_around(const Point &x, const Triangle &t, int featu
   if (feature == 0) return true;
   const int c = t.corner[(feature - 1) % 3], other = feature < 4 ? t.corner[feature % 3] : c;
   for (const int k : around[c]) {
-    const int *corner = triangles[k].corner;
-    if (corner[0] != other && corner[1] != other && corner[2] != other) continue;
+    const auto &corner = triangles[k].corner;
+    if (std::count(corner.begin(), corner.end(), other) == 0) continue;
     int unused;
-    const Point r = x - closest_on(corner, x, unused);
+    const Point r = x - closest_on(triangles[k], x, unused);
     if (dot(r, r) < square * (1.0 - 1.0e-9)) return false;
   }
   return true;
 }
-
-/* ---------------------------------------------------------------------- */
 
 int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) const
 {
@@ -626,7 +586,7 @@ int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) c
     double smallest = cutoff * cutoff;
     const Triangle *triangle = nullptr;
     Touch touch;
-    int at;
+    int at = 0;
     search(x, smallest, skip, [&](const Triangle &t, const Point &p, int feature, double square) {
       const double out = dot(x - p, mean_normal(t, feature));
       if (n > 0 && !(side * out > 0.0)) return;    // the far side of a plate
@@ -697,9 +657,8 @@ double SurfaceMesh::bound(const Point &x) const
   const int index = coarse_cell(x, c);
   // outside of the grid: not closer than the box of the body
   if (index < 0) return std::sqrt(square_of_distance(x, lo, hi));
-  const Point r = x - c;
   // single precision in the grid
-  const double known = std::abs((double) coarse[index]) * (1.0 - 1.0e-6) - std::sqrt(dot(r, r));
+  const double known = std::abs((double) coarse[index]) * (1.0 - 1.0e-6) - norm(x - c);
   if (known <= 0.0) return 0.0;
   return coarse[index] < 0.0f ? -known : known;
 }
@@ -710,8 +669,7 @@ double SurfaceMesh::most(const Point &x) const
   Point c;
   const int index = coarse_cell(x, c);
   if (index < 0) return FAR_AWAY;
-  const Point r = x - c;
-  return (std::abs((double) coarse[index]) + std::sqrt(dot(r, r))) * (1.0 + 1.0e-6) + near;
+  return (std::abs((double) coarse[index]) + norm(x - c)) * (1.0 + 1.0e-6) + near;
 }
 
 bool SurfaceMesh::inside(const Point &x) const

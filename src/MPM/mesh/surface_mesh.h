@@ -38,8 +38,7 @@ struct SurfaceOptions {
  *  there; at edges and corners that is the mean normal weighted with angles (J.A. Baerentzen, H.
  *  Aanaes, IEEE Trans. Vis. Comput. Graph. 11 (2005) 243). A coarse grid of distances, made once,
  *  answers most questions without a search: a point is no closer to the surface than the distance
- *  at the center of its cell less its distance from that center.
- */
+ *  at the center of its cell less its distance from that center. */
 class SurfaceMesh {
  public:
   using Point = std::array<double, 3>;
@@ -94,8 +93,8 @@ class SurfaceMesh {
   /** Number of parts between sharp edges, where normals are more than 45 degrees apart */
   int nparts;
   std::size_t size() const { return triangles.size(); }
-  std::vector<std::array<Point, 3>>
-  soup() const;          ///< corners of all triangles, including patches
+  /** Corners of all triangles, including patches. */
+  std::vector<std::array<Point, 3>> soup() const;
   SurfaceHoles holes;    ///< repairs of a leaky surface
   /** Does a leaky surface wind twice, or backward, around some places? Its volume counts them
    *  so. */
@@ -103,7 +102,7 @@ class SurfaceMesh {
 
  private:
   struct Triangle {
-    int corner[3];
+    std::array<int, 3> corner;
     Point normal;            // unit
     Point edge_normal[3];    // of the edges 01, 12, 20: sum of the two triangles' normals
     int part;
@@ -143,7 +142,8 @@ class SurfaceMesh {
   std::vector<Shell> find_shells() const;
   void check_shells(const std::string &name) const;
   bool is_inside(const Shell &, const Shell &other, const std::string &name) const;
-  Point closest_on(const int corner[3], const Point &x, int &feature) const;
+  std::array<Point, 3> places(const Triangle &) const;
+  Point closest_on(const Triangle &, const Point &x, int &feature) const;
   template <class Skip, class Visit>
   void search(const Point &x, double &limit, Skip &&skip, Visit &&visit) const;
   template <class Skip>

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace MPM_NS {
 namespace vector3 {
@@ -44,6 +45,15 @@ namespace vector3 {
   {
     return std::sqrt(dot(a, a));
   }
+  inline double norm(const double *a)
+  {
+    return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+  }
+  /** to = a - b. */
+  inline void difference(const double *a, const double *b, double *to)
+  {
+    for (int d = 0; d < 3; d++) to[d] = a[d] - b[d];
+  }
   /** Enlarges a box so that it contains x. */
   inline void include(const Vector &x, Vector &lo, Vector &hi)
   {
@@ -51,6 +61,23 @@ namespace vector3 {
       lo[d] = std::min(lo[d], x[d]);
       hi[d] = std::max(hi[d], x[d]);
     }
+  }
+
+  /** Reorders the items [first,last) of a list, whose centers are in the box from low to high, so
+   *  that those of the lower half along the longest axis of the box come first. Returns where the
+   *  upper half begins. */
+  template <class Item, class Center>
+  int halve(std::vector<Item> &list, int first, int last, const Vector &low, const Vector &high,
+            const Center &center_of)
+  {
+    const Vector size = high - low;
+    const int axis = (int) (std::max_element(size.begin(), size.end()) - size.begin());
+    const int middle = (first + last) / 2;
+    std::nth_element(list.begin() + first, list.begin() + middle, list.begin() + last,
+                     [&](const Item &a, const Item &b) {
+                       return center_of(a)[axis] < center_of(b)[axis];
+                     });
+    return middle;
   }
 
 }    // namespace vector3

@@ -11,6 +11,7 @@
 #include "mesh/vector3.h"
 
 #include <algorithm>
+#include <utility>
 
 using namespace MPM_NS;
 using namespace MPM_NS::vector3;
@@ -18,11 +19,8 @@ using Point = WindingNumber::Point;
 
 static constexpr double PI = 3.14159265358979323846;
 
-WindingNumber::WindingNumber(const std::vector<Point> &corners,
-                             const std::vector<std::array<int, 3>> &numbers)
+WindingNumber::WindingNumber(std::vector<std::array<Point, 3>> of) : triangles(std::move(of))
 {
-  triangles.reserve(numbers.size());
-  for (const auto &t : numbers) triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
   tree.reserve(triangles.size());
   if (!triangles.empty()) build(0, (int) triangles.size());
 }
@@ -61,13 +59,7 @@ int WindingNumber::build(int first, int last)
   }
 
   if (last - first > LEAF) {
-    const Point extent = high - low;
-    const int axis = (int) (std::max_element(extent.begin(), extent.end()) - extent.begin());
-    const int middle = (first + last) / 2;
-    std::nth_element(triangles.begin() + first, triangles.begin() + middle,
-                     triangles.begin() + last, [&](const auto &s, const auto &t) {
-                       return center_of(s)[axis] < center_of(t)[axis];
-                     });
+    const int middle = halve(triangles, first, last, low, high, center_of);
     node.last = -1;
     node.child[0] = build(first, middle);
     node.child[1] = build(middle, last);

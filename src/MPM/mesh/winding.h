@@ -27,9 +27,8 @@ class WindingNumber {
  public:
   using Point = std::array<double, 3>;
 
-  /** triangles: indices of corners. */
-  WindingNumber(const std::vector<Point> &corners,
-                const std::vector<std::array<int, 3>> &triangles);
+  /** Corners of triangles. */
+  explicit WindingNumber(std::vector<std::array<Point, 3>> triangles);
 
   /** The winding number around x. */
   double operator()(const Point &x) const;

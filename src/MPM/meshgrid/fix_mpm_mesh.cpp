@@ -40,94 +40,6 @@ static constexpr double LOCKS = 0.48;
 
 static constexpr int CHECK_EVERY = 10;    // steps between looks at the time step
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/mesh FILE keyword values ...
-------------------------------------------------------------------------- */
-
-Options MPMMeshOptions::declare(int dim)
-{
-  using namespace option;
-  Options o("fix mpm/mesh");
-  o.argument(text(file, "file"));
-  o.add("part",
-        {text(
-            part, "name",
-            "name or tag of a physical group of the mesh, or a set, whose elements are the cells")})
-      .standard("all elements of the dimension of the simulation");
-  o.add("frame",
-        {word(total,
-              {{"updated", false, "nodes are fixed in space, and points move through the mesh"},
-               {"total", true, "nodes are fixed in the undeformed body"}})})
-      .keep();
-  o.add("scheme",
-        {word(musl,
-              {{"usl", false, "strain from the velocities after the momentum equation"},
-               {"musl", true,
-                "strain from the new velocities of the points, mapped back to the nodes"}})})
-      .keep();
-  o.add(
-       "transfer",
-       {word(transfer,
-             {{"flip",
-               FLIP,
-               "velocities of points get the change of the nodes",
-               {number(flip, "share", FRACTION, "1", "1: FLIP, 0: PIC")}},
-              {"apic", APIC, "velocities of points come with the velocity gradient of the cell"}})})
-      .keep();
-  o.add("locking",
-        {word(fbar,
-              {{"none", false, "nothing"},
-               {"fbar", true, "changes of volume and the mean stress, over the points around"}})},
-        "quantity that is averaged to prevent volumetric locking")
-      .keep();
-  const auto condition = [&](const std::string &keyword, MPMMeshCondition::Kind kind,
-                             const std::string &names, const std::string &unit,
-                             const std::string &meaning, int n, bool null) {
-    std::vector<OptionValue> values;
-    values.push_back(text(next.group, "name", meaning));
-    if (n)
-      values.push_back(variables(next.value, n, names, unit,
-                                 null ? "components, can be variables; NULL leaves a component free"
-                                      : "value of the load, can be a variable",
-                                 null));
-    o.add(keyword, values)
-        .then([this, kind] {
-          next.kind = kind;
-          conditions.push_back(next);
-          next = {};
-        })
-        .standard("none");
-  };
-  condition("velocity", MPMMeshCondition::VELOCITY, dim == 3 ? "vx vy vz" : "vx vy", "velocity",
-            "name of a physical group or set whose nodes have this velocity", dim, true);
-  condition("slip", MPMMeshCondition::SLIP, "", "",
-            "name of sides whose nodes have no velocity along the normals", 0, false);
-  condition("pressure", MPMMeshCondition::PRESSURE, "p", "pressure",
-            "name of sides of the mesh, which are fixed in space (frame updated) or move with the "
-            "body (frame total)",
-            1, false);
-  condition("traction", MPMMeshCondition::TRACTION, dim == 3 ? "tx ty tz" : "tx ty", "pressure",
-            "name of sides of the mesh, with their area in the file", dim, false);
-  o.refuse([this, dim] {
-    OptionRules rules;
-    const std::pair<MPMMeshCondition::Kind, const char *> kinds[] = {
-        {MPMMeshCondition::VELOCITY, "velocity"},
-        {MPMMeshCondition::SLIP, "slip"},
-        {MPMMeshCondition::PRESSURE, "pressure"},
-        {MPMMeshCondition::TRACTION, "traction"}};
-    for (const auto &[kind, keyword] : kinds) {
-      const std::string group =
-          group_given_twice(conditions, kind, kind == MPMMeshCondition::VELOCITY ? dim : 1);
-      const bool loads = kind == MPMMeshCondition::PRESSURE || kind == MPMMeshCondition::TRACTION;
-      rules.push_back({!group.empty(), keyword,
-                       "is given twice for group " + group +
-                           (loads ? ": give the sum once" : ": give it once")});
-    }
-    return rules;
-  });
-  return o;
-}
-
 FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   const int dim = domain->dimension;
@@ -169,10 +81,6 @@ FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, nar
   restart_global = 1;
   keep_arrays();
 }
-
-FixMPMMesh::~FixMPMMesh() = default;
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMMesh::init()
 {
@@ -229,7 +137,6 @@ void FixMPMMesh::init()
   forces->init(fmt::format("fix mpm/mesh {}", id));
 
   // points need no ghosts, see FixMPM::init()
-
   const double nothing = 1.0e-8 * body->shortest;
   if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
   if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
@@ -237,21 +144,25 @@ void FixMPMMesh::init()
   make_plan();
 }
 
+/** The fix of this class that belongs to this one, or null. advice: what to do with several. */
+template <class F> F *FixMPMMesh::find_attached(const char *advice) const
+{
+  F *found = nullptr;
+  for (auto *mine : find_fixes<F>(lmp)) {
+    if (mine->mesh_fix() != id) continue;
+    if (found)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix {} {} and {} are of the same fix mpm/mesh {}: {} in one of them", mine->style,
+                 found->id, mine->id, id, advice);
+    found = mine;
+  }
+  return found;
+}
+
 /** Bodies with their own velocities at the nodes. */
 void FixMPMMesh::find_contact()
 {
-  contact = nullptr;
-  for (auto *other : modify->get_fix_by_style("^mpm/mesh/contact$")) {
-    auto *mine = dynamic_cast<FixMPMMeshContact *>(other);
-    if (mine->mesh_fix() != id) continue;
-    if (contact)
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/mesh/contact {} and {} are of the same fix mpm/mesh {}: name all bodies in "
-          "one of them",
-          contact->id, mine->id, id);
-    contact = mine;
-  }
+  contact = find_attached<FixMPMMeshContact>("name all bodies");
   if (contact && total)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/mesh/contact {} cannot be used with frame total of fix mpm/mesh {}, whose "
@@ -269,17 +180,7 @@ void FixMPMMesh::find_contact()
 
 void FixMPMMesh::find_heat()
 {
-  heat = nullptr;
-  for (auto *other : modify->get_fix_by_style("^mpm/mesh/heat$")) {
-    auto *mine = dynamic_cast<FixMPMMeshHeat *>(other);
-    if (mine->mesh_fix() != id) continue;
-    if (heat)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/mesh/heat {} and {} are of the same fix mpm/mesh {}: give all conditions "
-                 "in one of them",
-                 heat->id, mine->id, id);
-    heat = mine;
-  }
+  heat = find_attached<FixMPMMeshHeat>("give all conditions");
   if (!heat) return;
   if (!total)
     error->all(FLERR, Error::NOLASTLINE,
@@ -293,8 +194,6 @@ void FixMPMMesh::find_heat()
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh/heat {}: {}: {}", heat->id, file, e.what());
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMMesh::setup_pre_neighbor()
 {
@@ -390,11 +289,8 @@ void FixMPMMesh::warn_of_sides() const
                    id, all[ON_SIDES], all[ALL], example_all);
 }
 
-/* ----------------------------------------------------------------------
-   of cells with one quadrangle or hexahedron a point each, points keep their volume without more;
-   fluids are not asked, as flows of few points in a cell are near to what they should be
-------------------------------------------------------------------------- */
-
+/** Of cells with one quadrangle or hexahedron a point each, points keep their volume without more;
+ *  fluids are not asked, as flows of few points in a cell are near to what they should be. */
 void FixMPMMesh::warn_of_locking()
 {
   if (fbar) return;
@@ -451,8 +347,6 @@ void FixMPMMesh::pre_neighbor()
   body->list_points();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMMesh::make_plan()
 {
   using Data = MPMStageData;
@@ -473,7 +367,7 @@ void FixMPMMesh::make_plan()
   if (heat)
     stages.add("heat", {Data::POSITION, Data::DEFORMATION, Data::HISTORY, Data::MASS, CELLS},
                {Data::HISTORY, Data::OWN}, [this] {
-                 heat->conduct(body->bodies(), update->dt);
+                 heat->conduct(*body, update->dt);
                });
   stages.add("points to nodes",
              {Data::POSITION, Data::VELOCITY, Data::AFFINE, Data::DEFORMATION, Data::STRESS,
@@ -537,11 +431,8 @@ void FixMPMMesh::check_dt()
                update->dt, limit, id, update->ntimestep, tag);
 }
 
-/* ----------------------------------------------------------------------
-   scalar: number of points; vector: kinetic and stored energy, work of forces from outside, points
-   that are outside of the mesh by less than OUTSIDE; forces of the conditions on the body
-------------------------------------------------------------------------- */
-
+/** Scalar: number of points; vector: kinetic and stored energy, work of forces from outside, points
+ *  that are outside of the mesh by less than OUTSIDE; forces of the conditions on the body. */
 double FixMPMMesh::compute_scalar()
 {
   double n = 0.0, all;

@@ -40,7 +40,6 @@ class FixMPMMesh :
     private MPMMeshOptions {
  public:
   FixMPMMesh(class LAMMPS *, int, char **);
-  ~FixMPMMesh() override;
   int setmask() override { return FixConst::INITIAL_INTEGRATE | FixConst::PRE_NEIGHBOR; }
   void init() override;
   void setup_pre_neighbor() override;
@@ -68,6 +67,7 @@ class FixMPMMesh :
   MPMStageList stages;
   bigint steps = 0;
 
+  template <class F> F *find_attached(const char *advice) const;
   void make_plan();
   void find_contact();
   void find_heat();

@@ -6,26 +6,25 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Where two bodies have mass at a node of the mesh and their points touch, impulses are those of
+/* Where two bodies have mass at a node of the mesh and their points touch, impulses are those of
    fix mpm/contact (MPMNodeContact).
 
-   Normals are those of the plane that tells the points of both bodies apart best
-   (math/plane_between.h), in the cells around the node. Linear functions reach one cell, so that
-   the gradient of the volume of a body at its corner points along the diagonal, and a block that
-   slides would be stopped by what is below it; the plane between two rows of points is that of the
-   rows, also where one of them ends.
+   Normals are along the shortest way between the points of both bodies in the cells around the node
+   (math/hull_distance.h), or where bodies have got into each other, those of the plane that tells
+   their points apart best (math/plane_between.h). Linear functions reach one cell, so that the
+   gradient of the volume of a body at its corner points along the diagonal, and a block that slides
+   would be stopped by what is below it.
 
    Gap. The distance of the points along that normal, of those that are farthest ahead, less half of
    the width of each: the volumes of bodies at a node, by which fix mpm/contact knows whether they
    touch, are not that of the node where cells and points do not match.
 
    Conditions of the mesh hold all bodies at a node in the same way. Normals and impulses are in the
-   directions that are free, so that contact leaves these conditions as they are.
-------------------------------------------------------------------------- */
+   directions that are free, so that contact leaves these conditions as they are. */
 
 #include "meshgrid/fix_mpm_mesh_contact.h"
 
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "base/mpm_state.h"
@@ -36,7 +35,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "domain.h"
 #include "error.h"
 #include "group.h"
 #include "modify.h"
@@ -52,19 +50,14 @@ static constexpr int MAX_ITERATIONS = 200;      // at a node with three or more 
 static constexpr double CONVERGED = 1.0e-12;    // change of the impulses, relative to them
 
 // bodies that are placed next to each other touch, up to rounding in units of the size of a node
-
 static constexpr double ROUNDING = 1.0e-8;
 
 // points that tell whether bodies touch at a node are not farther beside it, in sizes of the node
-
 static constexpr double BESIDE = 0.5;
 
 static constexpr double OVERLAP = 0.5;    // sizes of a node that are reported at the start
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/mesh/contact MESH group group ... law ...
-------------------------------------------------------------------------- */
-
+/** fix ID all mpm/mesh/contact MESH group group ... law ... */
 Options MPMMeshContactOptions::declare()
 {
   using namespace option;
@@ -132,8 +125,6 @@ int FixMPMMeshContact::body_of(int mask) const
   return body;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMMeshContact::begin_run(const BackgroundMesh &mesh)
 {
   points = MPMPoints::get(atom);
@@ -153,22 +144,16 @@ void FixMPMMeshContact::begin_run(const BackgroundMesh &mesh)
   look = true;
 }
 
-/* ----------------------------------------------------------------------
-   Pairs of bodies that touch at nodes. All ranks that have a node find the same there
-------------------------------------------------------------------------- */
-
-void FixMPMMeshContact::find(const MPMMeshBodies &of)
+/** Pairs of bodies that touch at nodes. All ranks that have a node find the same there. */
+void FixMPMMeshContact::find(MPMMeshBody &of)
 {
-  const std::size_t nnode = sizes.size();
   found.clear();
-  found_at.clear();
   overlap = 0.0;
   for (int a = 0; a < count(); a++)
     for (int b = a + 1; b < count(); b++) {
       node_of_row.clear();
       for (const int node : of.ranks.nodes) {
-        const bool shared = of.mass[of.stride * (a * nnode + node)] > 0.0 &&
-            of.mass[of.stride * (b * nnode + node)] > 0.0;
+        const bool shared = of.mass_of(a, node) > 0.0 && of.mass_of(b, node) > 0.0;
         row[node] = shared ? (int) node_of_row.size() : -1;
         if (shared) node_of_row.push_back(node);
       }
@@ -180,28 +165,25 @@ void FixMPMMeshContact::find(const MPMMeshBodies &of)
     }
 
   // by nodes
-
-  std::vector<int> by_node(found.size());
-  for (std::size_t k = 0; k < found.size(); k++) by_node[k] = (int) k;
-  std::stable_sort(by_node.begin(), by_node.end(), [this](int j, int k) {
-    return found_at[j] < found_at[k];
+  std::stable_sort(found.begin(), found.end(), [](const auto &one, const auto &other) {
+    return one.first < other.first;
   });
   pairs.clear();
   nodes.clear();
-  for (const int k : by_node) {
-    if (nodes.empty() || nodes.back().node != found_at[k])
-      nodes.push_back({found_at[k], (int) pairs.size(), (int) pairs.size()});
-    pairs.push_back(found[k]);
+  for (const auto &[node, contact] : found) {
+    if (nodes.empty() || nodes.back().node != node)
+      nodes.push_back({node, (int) pairs.size(), (int) pairs.size()});
+    pairs.push_back(contact);
     nodes.back().last++;
   }
 }
 
 /** Points of two bodies at nodes that both have. */
-void FixMPMMeshContact::find_near(const MPMMeshBodies &of, int a, int b)
+void FixMPMMeshContact::find_near(MPMMeshBody &of, int a, int b)
 {
   near.clear();
   if (node_of_row.empty()) return;
-  for (const int i : of.points) {
+  for (const int i : of.order) {
     const int body = body_of(atom->mask[i]);
     if (body != a && body != b) continue;
     const auto &place = of.places[i];
@@ -218,7 +200,7 @@ void FixMPMMeshContact::find_near(const MPMMeshBodies &of, int a, int b)
 }
 
 /** Along the shortest way from points to points. */
-void FixMPMMeshContact::find_normals(const MPMMeshBodies &of)
+void FixMPMMeshContact::find_normals(MPMMeshBody &of)
 {
   hulls.assign(node_of_row.size(), {});
   std::vector<int> open = row;    // of nodes where it is not known yet
@@ -255,7 +237,7 @@ void FixMPMMeshContact::find_normals(const MPMMeshBodies &of)
 
 /** Where bodies have got into each other: along the normal of the plane that tells their points
  *  apart best. */
-void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
+void FixMPMMeshContact::separate_mixed(MPMMeshBody &of)
 {
   constexpr int N = PlaneBetween::NREAL;
   const auto is_mixed = [this](int r) {
@@ -284,12 +266,9 @@ void FixMPMMeshContact::separate_mixed(const MPMMeshBodies &of)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Half of the width of a point along n: that of a square or cube of its volume, stretched as planes
-   with this normal are
-------------------------------------------------------------------------- */
-
-void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
+/** Half of the width of a point along n: that of a square or cube of its volume, stretched as
+ *  planes with this normal are. */
+void FixMPMMeshContact::find_gaps(MPMMeshBody &of, int a, int b)
 {
   const int dim = of.mesh.dim;
   ends.assign(2 * node_of_row.size(), -1.0e300);
@@ -316,7 +295,6 @@ void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
     overlap = std::max(overlap, depth);
 
     // in the directions that are free at the node
-
     const int node = node_of_row[r];
     MeshVector n = normals[r], zero = {0.0, 0.0, 0.0};
     of.forces.constrain(node, 0.0, n.data());
@@ -328,18 +306,14 @@ void FixMPMMeshContact::find_gaps(const MPMMeshBodies &of, int a, int b)
     contact.a = a;
     contact.b = b;
     for (int d = 0; d < 3; d++) contact.n[d] = n[d] / length;
-    found.push_back(contact);
-    found_at.push_back(node);
+    found.emplace_back(node, contact);
   }
 }
 
-/* ----------------------------------------------------------------------
-   Impulses at a node. Of more than two bodies, those of all pairs follow from the same velocities,
-   so that their order does not matter (projected Jacobi iterations)
-------------------------------------------------------------------------- */
-
-void FixMPMMeshContact::solve(const MPMMeshBodies &of, const Node &at,
-                              std::vector<MeshVector> &velocities, bool decided)
+/** Impulses at a node. Of more than two bodies, those of all pairs follow from the same velocities,
+ *  so that their order does not matter (projected Jacobi iterations). */
+void FixMPMMeshContact::solve(MPMMeshBody &of, const Node &at, std::vector<MeshVector> &velocities,
+                              bool decided)
 {
   const std::size_t nnode = sizes.size();
   const int dim = of.mesh.dim;
@@ -347,7 +321,7 @@ void FixMPMMeshContact::solve(const MPMMeshBodies &of, const Node &at,
   Record held[MAX_BODIES], now[MAX_BODIES], end[MAX_BODIES];
   int nbody = 0;
   for (int b = 0; b < count(); b++) {
-    const double mass = of.mass[of.stride * (b * nnode + at.node)];
+    const double mass = of.mass_of(b, at.node);
     const MeshVector &v = velocities[b * nnode + at.node];
     end[b] = held[b] = {v[0], v[1], v[2], mass};
     if (!(mass > 0.0)) continue;
@@ -384,8 +358,7 @@ void FixMPMMeshContact::solve(const MPMMeshBodies &of, const Node &at,
     if (end[b][3] > 0.0) std::copy_n(end[b].data(), 3, velocities[b * nnode + at.node].data());
 }
 
-void FixMPMMeshContact::act(const MPMMeshBodies &of, std::vector<MeshVector> &velocities,
-                            bool decided)
+void FixMPMMeshContact::act(MPMMeshBody &of, std::vector<MeshVector> &velocities, bool decided)
 {
   if (!decided) {
     report.begin_step(update->dt);
@@ -430,8 +403,5 @@ void FixMPMMeshContact::restart(char *buf)
 
 double FixMPMMeshContact::memory_usage()
 {
-  return (double) (near.capacity() * sizeof(Near) + pairs.capacity() * sizeof(MPMNodeContact) +
-                   hulls.capacity() * sizeof(HullDistance) +
-                   (sizes.capacity() + ends.capacity()) * sizeof(double) +
-                   (row.capacity() + node_of_row.capacity()) * sizeof(int));
+  return bytes_of(near, pairs, hulls, sizes, ends, row, node_of_row);
 }

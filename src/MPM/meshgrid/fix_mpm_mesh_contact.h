@@ -15,7 +15,6 @@ FixStyle(mpm/mesh/contact,FixMPMMeshContact);
 #ifndef LMP_FIX_MPM_MESH_CONTACT_H
 #define LMP_FIX_MPM_MESH_CONTACT_H
 
-#include "contact/mpm_contact_report.h"
 #include "contact/mpm_node_contact.h"
 #include "declare/option.h"
 #include "fix.h"
@@ -24,27 +23,16 @@ FixStyle(mpm/mesh/contact,FixMPMMeshContact);
 #include "meshgrid/mpm_mesh_conditions.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace LAMMPS_NS {
-class MPMMeshRanks;
+class MPMMeshBody;
 struct MPMPoints;
 
 /** Keywords of fix mpm/mesh/contact. */
 struct MPMMeshContactOptions : MPMContactLaw {
   MPM_NS::Options declare();
-};
-
-/** Data of fix mpm/mesh for contact and heat. Data of nodes have the row b * nodes + node for body
- *  b of several bodies. */
-struct MPMMeshBodies {
-  const MPM_NS::BackgroundMesh &mesh;
-  MPMMeshRanks &ranks;
-  MPMMeshForces &forces;
-  const std::vector<int> &points;                              ///< of this rank
-  const std::vector<MPM_NS::BackgroundMesh::Place> &places;    ///< [point] place in the mesh
-  const double *mass;                                          ///< mass in the first row
-  std::size_t stride;                                          ///< distance from row to row
 };
 
 /** Contact of bodies, groups of points of one fix mpm/mesh, each with its own velocities at the
@@ -72,7 +60,7 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   /** Applies impulses between bodies to velocities [row] of nodes where they touch. decided: for
    *  velocities that were mapped back, which are in contact at the same nodes as found earlier in
    *  this step. Collective. */
-  void act(const MPMMeshBodies &, std::vector<MPM_NS::MeshVector> &velocities, bool decided);
+  void act(MPMMeshBody &, std::vector<MPM_NS::MeshVector> &velocities, bool decided);
 
   static constexpr int MAX_BODIES = 8;
 
@@ -93,28 +81,26 @@ class FixMPMMeshContact : public Fix, private MPMMeshContactOptions {
   MPMPoints *points = nullptr;
   std::vector<double> sizes;    // [node] size of the volume that belongs to it
   std::vector<Node> nodes;
-  /** Contacts, with normals within the directions that conditions leave free; found: [index in
-   *  found_at] */
-  std::vector<MPMNodeContact> pairs, found;
-  std::vector<int> found_at;    // nodes of found
-  double overlap = 0.0;         // largest overlap in this step, in sizes of points
-  bool look = true;             // check for overlap
+  /** Contacts, with normals within the directions that conditions leave free. */
+  std::vector<MPMNodeContact> pairs;
+  std::vector<std::pair<int, MPMNodeContact>> found;    // with their nodes
+  double overlap = 0.0;    // largest overlap in this step, in sizes of points
+  bool look = true;        // check for overlap
   MPMContactReport report;
 
   // of the pair of bodies that is being treated
-
   std::vector<int> row, node_of_row;    // [node] row, -1: not shared; [row] node
   std::vector<Near> near;
   std::vector<MPM_NS::HullDistance> hulls;
   std::vector<MPM_NS::MeshVector> normals;
   std::vector<double> ends;
 
-  void find(const MPMMeshBodies &);
-  void find_near(const MPMMeshBodies &, int a, int b);
-  void find_normals(const MPMMeshBodies &);
-  void separate_mixed(const MPMMeshBodies &);
-  void find_gaps(const MPMMeshBodies &, int a, int b);
-  void solve(const MPMMeshBodies &, const Node &, std::vector<MPM_NS::MeshVector> &velocities,
+  void find(MPMMeshBody &);
+  void find_near(MPMMeshBody &, int a, int b);
+  void find_normals(MPMMeshBody &);
+  void separate_mixed(MPMMeshBody &);
+  void find_gaps(MPMMeshBody &, int a, int b);
+  void solve(MPMMeshBody &, const Node &, std::vector<MPM_NS::MeshVector> &velocities,
              bool decided);
   void warn_overlap();
 };

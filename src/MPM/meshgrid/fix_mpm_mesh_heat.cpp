@@ -6,8 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   The equations are those of fix mpm/heat with the transfer relax (mpm_conduction.cpp), with the
+/* The equations are those of fix mpm/heat with the transfer relax (mpm_conduction.cpp), with the
    functions of the cells in place of those of a lattice. In the total frame points stay in their
    cells, so that no node has next to no capacity, and flow goes by
 
@@ -17,11 +16,11 @@
    boundary: their temperatures are those that groups prescribe, and the heat for it is what comes
    through the group. That of sides is lumped at their nodes, as capacities are. A step is made of
    stages, so many that the rate of no node times their duration is above one: the rows of the
-   matrix bound its eigenvalues.
-------------------------------------------------------------------------- */
+   matrix bound its eigenvalues. */
 
 #include "meshgrid/fix_mpm_mesh_heat.h"
 
+#include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
@@ -49,56 +48,43 @@ using namespace MPM_NS;
 
 static constexpr int MOST_STAGES = 100;    // of a step
 
-static constexpr double SAME =
-    2.0;    // conductivities in a cell that differ by a larger factor lead to a warning
+// conductivities in a cell that differ by a larger factor lead to a warning
+static constexpr double SAME = 2.0;
 
-static constexpr int WIDTH =
-    3;    // sums at nodes: capacity, that times temperature, row of the matrix
+// sums at nodes: capacity, that times temperature, row of the matrix
+static constexpr int WIDTH = 3;
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/mesh/heat MESH keyword values ...
-------------------------------------------------------------------------- */
-
+/** fix ID all mpm/mesh/heat MESH keyword values ... */
 Options MPMMeshHeatOptions::declare()
 {
   using namespace option;
   Options o("fix mpm/mesh/heat");
-  const auto condition = [&](const std::string &keyword, MPMMeshHeatCondition::Kind kind,
+  const auto condition = [&](const std::string &keyword, MPMHeatCondition::Kind kind,
                              const std::string &names, const std::string &unit,
                              const std::string &meaning, int n) {
-    o.add(keyword,
-          {text(next.group, "name", meaning),
-           variables(next.value, n, names, unit,
-                     n > 1 ? "values, can be variables" : "value, can be a variable")})
-        .then([this, kind] {
-          next.kind = kind;
-          conditions.push_back(next);
-          next = {};
-        })
-        .standard("none");
+    add_condition(o, keyword,
+                  {text(next.group, "name", meaning),
+                   variables(next.value, n, names, unit,
+                             n > 1 ? "values, can be variables" : "value, can be a variable")},
+                  kind, next, conditions);
   };
-  condition("temperature", MPMMeshHeatCondition::TEMPERATURE, "T", "temperature",
+  condition("temperature", MPMHeatCondition::TEMPERATURE, "T", "temperature",
             "name of a physical group or set whose nodes have this temperature", 1);
-  condition("flux", MPMMeshHeatCondition::FLUX, "q", "energy/(time area)",
+  condition("flux", MPMHeatCondition::FLUX, "q", "energy/(time area)",
             "name of sides through which this heat flows into the body", 1);
   condition(
-      "convection", MPMMeshHeatCondition::CONVECTION, "H T",
+      "convection", MPMHeatCondition::CONVECTION, "H T",
       "energy/(time area temperature), temperature",
       "name of sides through which heat flows: H times the difference to the temperature T outside",
       2);
   o.refuse([this] {
     OptionRules rules;
-    const std::pair<MPMMeshHeatCondition::Kind, const char *> kinds[] = {
-        {MPMMeshHeatCondition::TEMPERATURE, "temperature"},
-        {MPMMeshHeatCondition::FLUX, "flux"},
-        {MPMMeshHeatCondition::CONVECTION, "convection"}};
-    for (const auto &[kind, keyword] : kinds) {
-      const std::string group = group_given_twice(conditions, kind);
-      rules.push_back(
-          {!group.empty(), keyword, "is given twice for group " + group + ": give it once"});
-    }
+    const auto once = "give it once";
+    refuse_twice(rules, conditions, MPMHeatCondition::TEMPERATURE, "temperature", once);
+    refuse_twice(rules, conditions, MPMHeatCondition::FLUX, "flux", once);
+    refuse_twice(rules, conditions, MPMHeatCondition::CONVECTION, "convection", once);
     for (const auto &c : conditions)
-      rules.push_back({c.kind == MPMMeshHeatCondition::CONVECTION && c.value[0].variable.empty() &&
+      rules.push_back({c.kind == MPMHeatCondition::CONVECTION && c.value[0].variable.empty() &&
                            !(c.value[0].value >= 0.0),
                        "convection", "needs a coefficient that is not negative: {convection}"});
     return rules;
@@ -119,7 +105,6 @@ FixMPMMeshHeat::FixMPMMeshHeat(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
   read_options(lmp, options, narg, arg, 4);
   heat.assign(conditions.size(), 0.0);
   power = heat;
-  present.assign(2 * conditions.size(), 0.0);
   scalar_flag = 1;
   vector_flag = !conditions.empty();
   size_vector = 2 * (int) conditions.size();
@@ -176,7 +161,7 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
   for (std::size_t c = 0; c < conditions.size(); c++) {
     const auto &given = conditions[c];
     const int condition = (int) c;
-    if (given.kind == MPMMeshHeatCondition::TEMPERATURE) {
+    if (given.kind == MPMHeatCondition::TEMPERATURE) {
       for (const int node : mesh.nodes_of(given.group)) {
         conditions_at_nodes.push_back({node, condition, 0.0});
         held[node] = 1;
@@ -205,26 +190,20 @@ const FixMPMMeshHeat::Thermal *FixMPMMeshHeat::thermal(int i) const
   return nullptr;
 }
 
-/* ----------------------------------------------------------------------
-   a step
-------------------------------------------------------------------------- */
-
-void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
+void FixMPMMeshHeat::conduct(MPMMeshBody &of, double dt)
 {
   const bool varies = std::any_of(conditions.begin(), conditions.end(), [](const auto &c) {
     return !c.value[0].variable.empty() || !c.value[1].variable.empty();
   });
   evaluate_in_step(lmp, varies, [this] {
-    for (std::size_t c = 0; c < conditions.size(); c++)
-      for (int k = 0; k < 2; k++)
-        if (conditions[c].value[k].given)
-          present[2 * c + k] = LAMMPS_NS::evaluate(lmp, conditions[c].value[k]);
-    for (std::size_t c = 0; c < conditions.size(); c++)
-      if (conditions[c].kind == MPMMeshHeatCondition::CONVECTION && !(present[2 * c] >= 0.0))
+    for (auto &c : conditions) {
+      for (int k = 0; k < c.nvalue(); k++) c.now[k] = LAMMPS_NS::evaluate(lmp, c.value[k]);
+      if (c.kind == MPMHeatCondition::CONVECTION && !(c.now[0] >= 0.0))
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/mesh/heat {} convection {}: variable {} = {:.6g}, but it must not be "
                    "negative",
-                   id, conditions[c].group, conditions[c].value[0].variable, present[2 * c]);
+                   id, c.group, c.value[0].variable, c.now[0]);
+    }
   });
   std::fill(power.begin(), power.end(), 0.0);
   find_layers(of);
@@ -256,7 +235,7 @@ void FixMPMMeshHeat::conduct(const MPMMeshBodies &of, double dt)
 /** Points that are partly molten have the conductivity of neither phase if it jumps there: as
  *  mpm_conduction.cpp, with the temperatures that nodes have within an eighth of their range in the
  *  cell on either side, with which fronts are nearer to their places than with a quarter. */
-Conduction FixMPMMeshHeat::conduction_of(const MPMMeshBodies &of, const Thermal &t, int i,
+Conduction FixMPMMeshHeat::conduction_of(MPMMeshBody &of, const Thermal &t, int i,
                                          bool nodes_known) const
 {
   constexpr double HALF_RANGE = 0.125;
@@ -298,10 +277,10 @@ void FixMPMMeshHeat::set_layers(const Cut &cut, const double *cofactors, double 
 }
 
 /** Points that conduct, with V F^-1 k F^-T. */
-void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
+void FixMPMMeshHeat::find_points(MPMMeshBody &of, bool nodes_known)
 {
   conducting.clear();
-  for (const int i : of.points) {
+  for (const int i : of.order) {
     const Thermal *const t = thermal(i);
     if (!t) continue;
     const Conduction c = conduction_of(of, *t, i, nodes_known);
@@ -315,8 +294,8 @@ void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
     }
     double along[3], n[3][3];
     principal_conductivities(c, F, along, n);
-    for (int a = 0; a < 3;
-         a++) {    // a principal axis, in the reference configuration: the inverse is cof^T/J
+    for (int a = 0; a < 3; a++) {
+      // a principal axis, in the reference configuration: the inverse is cof^T/J
       double N[3] = {0.0, 0.0, 0.0};
       for (int d = 0; d < 3; d++)
         for (int e = 0; e < 3; e++) N[d] += cofactors[3 * e + d] / J * n[a][e];
@@ -332,7 +311,7 @@ void FixMPMMeshHeat::find_points(const MPMMeshBodies &of, bool nodes_known)
  *  and the arithmetic one along it, of which the places of points tell the normal. In the total
  *  frame points stay in their cells. Not with conductivities that vary or have axes, of which a
  *  warning tells, once. */
-void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
+void FixMPMMeshHeat::find_layers(MPMMeshBody &of)
 {
   if (layers_known) return;
   layers_known = true;
@@ -344,7 +323,7 @@ void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
   std::vector<double> mine(NSUM * n, 0.0), sum(NSUM * n);
   bool plain = true;
   for (const auto &t : thermals) plain = plain && !t.varies && !t.all.orthotropic;
-  for (const int i : of.points) {
+  for (const int i : of.order) {
     const Thermal *const t = thermal(i);
     if (!t) continue;
     const auto &place = of.places[i];
@@ -395,7 +374,7 @@ void FixMPMMeshHeat::find_layers(const MPMMeshBodies &of)
 }
 
 /** Capacities and temperatures of nodes; returns the greatest rate of those of this rank. */
-double FixMPMMeshHeat::fill_nodes(const MPMMeshBodies &of)
+double FixMPMMeshHeat::fill_nodes(MPMMeshBody &of)
 {
   for (const int node : of.ranks.nodes) std::fill_n(&sums[WIDTH * (std::size_t) node], WIDTH, 0.0);
   for (const auto &p : conducting) {
@@ -423,8 +402,8 @@ double FixMPMMeshHeat::fill_nodes(const MPMMeshBodies &of)
   }
   of.ranks.sum(sums.data(), WIDTH);
   for (const auto &mine : conditions_at_nodes)
-    if (conditions[mine.condition].kind == MPMMeshHeatCondition::CONVECTION)
-      sums[WIDTH * (std::size_t) mine.node + 2] += mine.area * present[2 * mine.condition];
+    if (conditions[mine.condition].kind == MPMHeatCondition::CONVECTION)
+      sums[WIDTH * (std::size_t) mine.node + 2] += mine.area * conditions[mine.condition].now[0];
   double fastest = 0.0;
   for (const int node : of.ranks.nodes) {
     const double *const sum = &sums[WIDTH * (std::size_t) node];
@@ -436,12 +415,12 @@ double FixMPMMeshHeat::fill_nodes(const MPMMeshBodies &of)
 }
 
 /** Nodes take the temperatures that are prescribed, the last one in the input where groups meet. */
-void FixMPMMeshHeat::hold(const MPMMeshBodies &of)
+void FixMPMMeshHeat::hold(MPMMeshBody &of)
 {
   for (const auto &mine : conditions_at_nodes) {
-    if (conditions[mine.condition].kind != MPMMeshHeatCondition::TEMPERATURE) continue;
+    if (conditions[mine.condition].kind != MPMHeatCondition::TEMPERATURE) continue;
     if (!(capacity[mine.node] > 0.0)) continue;
-    const double T = present[2 * mine.condition];
+    const double T = conditions[mine.condition].now[0];
     if (of.ranks.first[mine.node])
       power[mine.condition] += capacity[mine.node] * (T - value[mine.node]);
     value[mine.node] = T;
@@ -450,7 +429,7 @@ void FixMPMMeshHeat::hold(const MPMMeshBodies &of)
 
 /** A stage. Heat that a node would get whose temperature is prescribed leaves through the group
  *  that does so. */
-void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
+void FixMPMMeshHeat::advance(MPMMeshBody &of, double dt)
 {
   for (const int node : of.ranks.nodes) rate[node] = 0.0;
   for (const auto &p : conducting) {
@@ -464,16 +443,14 @@ void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
   }
   of.ranks.sum(rate.data(), 1);
   for (const auto &mine : conditions_at_nodes) {
-    const auto kind = conditions[mine.condition].kind;
-    if (kind == MPMMeshHeatCondition::TEMPERATURE || !(capacity[mine.node] > 0.0)) continue;
-    const double *const given = &present[2 * mine.condition];
-    const double flow = mine.area *
-        (kind == MPMMeshHeatCondition::FLUX ? given[0] : given[0] * (given[1] - value[mine.node]));
+    const MPMHeatCondition &given = conditions[mine.condition];
+    if (given.kind == MPMHeatCondition::TEMPERATURE || !(capacity[mine.node] > 0.0)) continue;
+    const double flow = mine.area * given.flux(value[mine.node], 0.0);    // there is no radiation
     rate[mine.node] += flow;
     if (of.ranks.first[mine.node]) power[mine.condition] += dt * flow;
   }
   for (auto mine = conditions_at_nodes.rbegin(); mine != conditions_at_nodes.rend(); ++mine) {
-    if (conditions[mine->condition].kind != MPMMeshHeatCondition::TEMPERATURE) continue;
+    if (conditions[mine->condition].kind != MPMHeatCondition::TEMPERATURE) continue;
     if (!(capacity[mine->node] > 0.0)) continue;
     if (of.ranks.first[mine->node]) power[mine->condition] -= dt * rate[mine->node];
     rate[mine->node] = 0.0;
@@ -483,7 +460,7 @@ void FixMPMMeshHeat::advance(const MPMMeshBodies &of, double dt)
 }
 
 /** Temperatures of points. */
-void FixMPMMeshHeat::take(const MPMMeshBodies &of, double dt)
+void FixMPMMeshHeat::take(MPMMeshBody &of, double dt)
 {
   const double keep = std::exp(-dt * relaxed / (largest * largest));
   for (const auto &p : conducting) {
@@ -510,11 +487,8 @@ void FixMPMMeshHeat::take(const MPMMeshBodies &of, double dt)
   }
 }
 
-/* ----------------------------------------------------------------------
-   scalar: heat that points have taken so far; vector: for each condition its power in the last
-   step, and heat so far
-------------------------------------------------------------------------- */
-
+/** Scalar: heat that points have taken so far; vector: for each condition its power in the last
+ *  step, and heat so far. */
 double FixMPMMeshHeat::compute_scalar()
 {
   double all;
@@ -531,11 +505,8 @@ double FixMPMMeshHeat::compute_vector(int k)
 
 double FixMPMMeshHeat::memory_usage()
 {
-  return FixMPMState::memory_usage() + (double) conducting.capacity() * sizeof(Point) +
-      (double) (conditions_at_nodes.capacity() * sizeof(NodeCondition) +
-                (capacity.capacity() + value.capacity() + before.capacity() + rate.capacity() +
-                 sums.capacity()) *
-                    sizeof(double));
+  return FixMPMState::memory_usage() +
+      bytes_of(conducting, conditions_at_nodes, capacity, value, before, rate, sums);
 }
 
 void FixMPMMeshHeat::write_restart(FILE *fp)

@@ -16,8 +16,8 @@ FixStyle(mpm/mesh/heat,FixMPMMeshHeat);
 #define LMP_FIX_MPM_MESH_HEAT_H
 
 #include "base/mpm_state.h"
-#include "declare/option.h"
-#include "material/material.h"
+#include "heat/mpm_heat_faces.h"
+#include "law/batch.h"
 #include "mesh/background_mesh.h"
 
 #include <string>
@@ -25,18 +25,13 @@ FixStyle(mpm/mesh/heat,FixMPMMeshHeat);
 
 namespace LAMMPS_NS {
 class FixMPMMaterial;
-struct MPMMeshBodies;
+class MPMMeshBody;
 struct MPMPoints;
 
-/** Thermal condition at the nodes of a physical group of a mesh. */
-struct MPMMeshHeatCondition {
-  enum Kind {
-    TEMPERATURE,    ///< prescribed temperature of its nodes
-    FLUX,           ///< power per area of its sides, into the body
-    CONVECTION      ///< coefficient; temperature outside
-  } kind = TEMPERATURE;
+/** Thermal condition at the nodes of a physical group of a mesh: prescribed temperature of its
+ *  nodes, or heat through its sides. */
+struct MPMMeshHeatCondition : MPMHeatCondition {
   std::string group;
-  MPM_NS::NumberOrVariable value[2];
 };
 
 /** Keywords of fix mpm/mesh/heat. */
@@ -67,7 +62,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   /** Prepares a run. Throws std::runtime_error if the mesh lacks a group of a condition. */
   void begin_run(const MPM_NS::BackgroundMesh &);
   /** Conducts heat for a time step. Collective. */
-  void conduct(const MPMMeshBodies &, double dt);
+  void conduct(MPMMeshBody &, double dt);
 
  private:
   /** A conducting material, with the history columns of its points. */
@@ -105,11 +100,10 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   double relaxed = 0.0;    // diffusivity with which points relax to the temperature of the nodes
   std::vector<Point> conducting;
   std::vector<double> capacity, value, before, rate, sums;    // of nodes
-  std::vector<char> held;         // [node] is the temperature prescribed?
-  std::vector<double> present;    // [condition][2] values of this step
-  double got = 0.0;               // heat that points have taken so far, this rank's share
-  std::vector<double> heat;       // [condition] heat through it so far, this rank's share
-  std::vector<double> power;      // [condition] power in the last step
+  std::vector<char> held;       // [node] is the temperature prescribed?
+  double got = 0.0;             // heat that points have taken so far, this rank's share
+  std::vector<double> heat;     // [condition] heat through it so far, this rank's share
+  std::vector<double> power;    // [condition] power in the last step
 
   std::vector<Cut> cuts;
   std::vector<int> cut_of;          // [cell] index in cuts; -1: none
@@ -117,15 +111,14 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   bool warned_of_layers = false;    // was a warning printed about interfaces without means?
 
   const Thermal *thermal(int i) const;
-  void find_layers(const MPMMeshBodies &);
+  void find_layers(MPMMeshBody &);
   static void set_layers(const Cut &, const double *cofactors, double J, double V, double *k);
-  MPM_NS::Conduction conduction_of(const MPMMeshBodies &, const Thermal &, int i,
-                                   bool nodes_known) const;
-  void find_points(const MPMMeshBodies &, bool nodes_known);
-  double fill_nodes(const MPMMeshBodies &);
-  void hold(const MPMMeshBodies &);
-  void advance(const MPMMeshBodies &, double dt);
-  void take(const MPMMeshBodies &, double dt);
+  MPM_NS::Conduction conduction_of(MPMMeshBody &, const Thermal &, int i, bool nodes_known) const;
+  void find_points(MPMMeshBody &, bool nodes_known);
+  double fill_nodes(MPMMeshBody &);
+  void hold(MPMMeshBody &);
+  void advance(MPMMeshBody &, double dt);
+  void take(MPMMeshBody &, double dt);
 };
 
 }    // namespace LAMMPS_NS

@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "base/mpm_find_fixes.h"
+#include "base/mpm_lists.h"
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "error.h"
@@ -105,11 +106,6 @@ std::size_t MPMMeshBody::rows_of(int i) const
   return contact ? contact->body_of(atom->mask[i]) * mesh.nodes.size() : 0;
 }
 
-MPMMeshBodies MPMMeshBody::bodies()
-{
-  return {mesh, ranks, forces, order, places, &sums[0].mass, WIDTH};
-}
-
 void MPMMeshBody::find_materials()
 {
   materials = find_fixes<FixMPMMaterial>(lmp);
@@ -136,10 +132,7 @@ void MPMMeshBody::find_places()
   }
 }
 
-/* ----------------------------------------------------------------------
-   nodes of cells with points, and, as points go to others, of those around these
-------------------------------------------------------------------------- */
-
+/** Nodes of cells with points, and, as points go to others, of those around these. */
 void MPMMeshBody::find_ranks()
 {
   std::vector<char> wanted(mesh.nodes.size(), 0), with_points(mesh.cells.size(), 0);
@@ -193,11 +186,19 @@ bool MPMMeshBody::lacks_nodes() const
   return any != 0;
 }
 
-/* ----------------------------------------------------------------------
-   In the total frame forces are of the first Piola-Kirchhoff stress tau F^-T on gradients in the
-   reference configuration
-------------------------------------------------------------------------- */
+/** Velocity of a point at a node, with the velocity gradient of APIC. */
+void MPMMeshBody::velocity_at(int i, int node, double *u) const
+{
+  std::copy_n(atom->v[i], 3, u);
+  if (!C) return;
+  double r[3];
+  for (int d = 0; d < 3; d++) r[d] = mesh.nodes[node][d] - position(i)[d];
+  for (int d = 0; d < mesh.dim; d++)
+    for (int e = 0; e < mesh.dim; e++) u[d] += C[i][3 * d + e] * r[e];
+}
 
+/** In the total frame forces are of the first Piola-Kirchhoff stress tau F^-T on gradients in the
+ *  reference configuration. */
 void MPMMeshBody::points_to_nodes()
 {
   const std::size_t nnode = mesh.nodes.size();
@@ -209,7 +210,7 @@ void MPMMeshBody::points_to_nodes()
   for (const int i : order) {
     const auto &place = places[i];
     const auto &one = mesh.cells[place.cell];
-    const double *const t = points->tau[i], *const f = atom->f[i], *const v = atom->v[i];
+    const double *const t = points->tau[i], *const f = atom->f[i];
     const double m = atom->rmass[i], V = unit * atom->vfrac[i];
     double P[9] = {t[0], t[3], t[4], t[3], t[1], t[5], t[4], t[5], t[2]};
     if (fbar) {
@@ -235,13 +236,8 @@ void MPMMeshBody::points_to_nodes()
     for (int k = 0; k < one.nnode; k++) {
       Node &node = sums[rows + one.node[k]];
       const double w = m * place.N[k], *const g = place.g[k];
-      double u[3] = {v[0], v[1], v[2]};
-      if (C) {
-        double r[3];
-        for (int d = 0; d < 3; d++) r[d] = mesh.nodes[one.node[k]][d] - position(i)[d];
-        for (int d = 0; d < dim; d++)
-          for (int e = 0; e < dim; e++) u[d] += C[i][3 * d + e] * r[e];
-      }
+      double u[3];
+      velocity_at(i, one.node[k], u);
       node.mass += w;
       for (int d = 0; d < dim; d++) {
         node.momentum[d] += w * u[d];
@@ -273,18 +269,14 @@ bool MPMMeshBody::counts_mass_at(int node) const
 double MPMMeshBody::mass_of_all(int node) const
 {
   double mass = 0.0;
-  for (int body = 0; body < count_bodies(); body++)
-    mass += sums[body * mesh.nodes.size() + node].mass;
+  for (int body = 0; body < count_bodies(); body++) mass += mass_of(body, node);
   return mass;
 }
 
-/* ----------------------------------------------------------------------
-   The work of a force is that at the mean of the velocities before and after the step, which is
-   what it does to the kinetic energy of the node. A load is of the body that is there; where two
-   bodies meet at a loaded side, each has the share of its mass at the node, so that the load
-   neither presses them on each other nor parts them
-------------------------------------------------------------------------- */
-
+/** The work of a force is that at the mean of the velocities before and after the step, which is
+ *  what it does to the kinetic energy of the node. A load is of the body that is there; where two
+ *  bodies meet at a loaded side, each has the share of its mass at the node, so that the load
+ *  neither presses them on each other nor parts them. */
 void MPMMeshBody::find_velocities()
 {
   const int dim = mesh.dim;
@@ -303,7 +295,7 @@ void MPMMeshBody::find_velocities()
       after[row][d] = before[row][d] + impulse * (mine.force[d] + mine.load[d]) / mine.mass;
     }
   });
-  if (contact) contact->act(bodies(), after, false);
+  if (contact) contact->act(*this, after, false);
   each([&](int node, std::size_t row) {
     const Node &mine = sums[row];
     if (!(mine.mass > 0.0)) return;
@@ -350,12 +342,8 @@ void MPMMeshBody::map_back()
     const auto &one = mesh.cells[place.cell];
     const std::size_t rows = rows_of(i);
     for (int k = 0; k < one.nnode; k++) {
-      double u[3] = {atom->v[i][0], atom->v[i][1], atom->v[i][2]}, r[3];
-      if (C) {
-        for (int d = 0; d < 3; d++) r[d] = mesh.nodes[one.node[k]][d] - position(i)[d];
-        for (int d = 0; d < dim; d++)
-          for (int e = 0; e < dim; e++) u[d] += C[i][3 * d + e] * r[e];
-      }
+      double u[3];
+      velocity_at(i, one.node[k], u);
       for (int d = 0; d < dim; d++)
         mapped[rows + one.node[k]][d] += atom->rmass[i] * place.N[k] * u[d];
     }
@@ -369,19 +357,16 @@ void MPMMeshBody::map_back()
   each([&](int, std::size_t row) {
     for (double &v : mapped[row]) v /= sums[row].mass;
   });
-  if (contact) contact->act(bodies(), mapped, true);
+  if (contact) contact->act(*this, mapped, true);
   each([&](int node, std::size_t row) {
     forces.constrain(node, 0.0, mapped[row].data());
   });
 }
 
-/* ----------------------------------------------------------------------
-   In the updated frame points move with the velocities that strain them. Nodes that points barely
-   reach can have any velocity after the momentum equation, whose gradient would be that of the
-   points: it is that of the mapped velocities, too. In the total frame forces do not depend on
-   where points are
-------------------------------------------------------------------------- */
-
+/** In the updated frame points move with the velocities that strain them. Nodes that points barely
+ *  reach can have any velocity after the momentum equation, whose gradient would be that of the
+ *  points: it is that of the mapped velocities, too. In the total frame forces do not depend on
+ *  where points are. */
 void MPMMeshBody::move_and_strain()
 {
   const int dim = mesh.dim, nL = dim * dim;
@@ -458,16 +443,12 @@ void MPMMeshBody::load_state(const int *list, int n, const FixMPMMaterial *mater
   }
 }
 
-/* ----------------------------------------------------------------------
-   h/(c + |v|) with the height of the cell; in the total frame it shrinks with the smallest stretch,
-   and points stay in their cells
-------------------------------------------------------------------------- */
-
+/** h/(c + |v|) with the height of the cell; in the total frame it shrinks with the smallest
+ *  stretch, and points stay in their cells. */
 double MPMMeshBody::stable_dt(tagint &tag) const
 {
   // at the end of a step points have moved since their cells were found, unless there was a new
   // neighbor list
-
   const auto cell_now = [this](int i) {
     BackgroundMesh::Place place = places[i];
     if (!options.total) mesh.find(position(i), places[i].cell, place);
@@ -502,8 +483,6 @@ double MPMMeshBody::stable_dt(tagint &tag) const
 
 double MPMMeshBody::memory_usage() const
 {
-  return ranks.memory_usage() +
-      (double) (places.capacity() * sizeof(BackgroundMesh::Place) + sums.capacity() * sizeof(Node) +
-                (before.capacity() + after.capacity() + mapped.capacity()) * sizeof(MeshVector)) +
+  return ranks.memory_usage() + bytes_of(places, sums, before, after, mapped) +
       (fbar ? fbar->memory_usage() : 0.0);
 }

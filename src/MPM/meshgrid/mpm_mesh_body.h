@@ -26,7 +26,6 @@ namespace LAMMPS_NS {
 class FixMPMMaterial;
 class FixMPMMeshContact;
 class MPMMeshFbar;
-struct MPMMeshBodies;
 struct MPMPoints;
 
 /** Keywords of fix mpm/mesh. */
@@ -60,7 +59,6 @@ class MPMMeshBody : protected Pointers {
   double shortest;    ///< height of the smallest cell, for artificial viscosity
 
   // of points
-
   double *cell = nullptr;    ///< number of its cell + 1; 0: unknown
   MPMRows X;                 ///< position in the reference configuration; total frame only
   MPMRows C;                 ///< velocity gradient of APIC, row-major [9]
@@ -72,7 +70,6 @@ class MPMMeshBody : protected Pointers {
   std::unique_ptr<MPM_NS::Batch> batch;
 
   // of nodes; with contact, of the nodes of each body in turn
-
   std::vector<char> has_node;    ///< on this rank
   /** Present positions of the nodes of the reference configuration, for a follower pressure and for
    *  means. They are always kept, as either may be added after a restart. Updated frame: empty. */
@@ -90,7 +87,8 @@ class MPMMeshBody : protected Pointers {
   int count_bodies() const;
   /** The row of the first node of the body of a point. */
   std::size_t rows_of(int i) const;
-  MPMMeshBodies bodies();
+  /** Mass of body b at a node. */
+  double mass_of(int b, int node) const { return sums[b * mesh.nodes.size() + node].mass; }
   /** Does this rank count a node that has mass of any body? */
   bool counts_mass_at(int node) const;
   /** Deformation gradient of the nodes at a place; in 2d the part in the plane is set. */
@@ -104,7 +102,6 @@ class MPMMeshBody : protected Pointers {
   double memory_usage() const;
 
   // a step, in this order
-
   /** Lists the points of this rank, after these have changed. Sums go over points in the order of
    *  their IDs, which does not depend on what was before. Collective. */
   void list_points();
@@ -133,6 +130,7 @@ class MPMMeshBody : protected Pointers {
   static constexpr int WIDTH = 10;    // number of reals in a Node
 
   double mass_of_all(int node) const;
+  void velocity_at(int i, int node, double *u) const;
 
   const Fix &fix;
   const MPMMeshOptions &options;

@@ -15,12 +15,9 @@
 #include "comm.h"
 #include "error.h"
 #include "force.h"
-#include "modify.h"
-#include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -32,8 +29,6 @@ static constexpr double SMOOTH = 0.866;
 
 static constexpr double LOST =
     0.01;    // share of a load on nodes without mass that leads to a warning
-
-/* ---------------------------------------------------------------------- */
 
 MPMMeshForces::MPMMeshForces(LAMMPS *lmp, const BackgroundMesh &mesh,
                              const std::vector<MPMMeshCondition> &conditions) :
@@ -69,11 +64,8 @@ MPMMeshForces::NodeCondition &MPMMeshForces::add(int node, int condition)
   return all.back();
 }
 
-/* ----------------------------------------------------------------------
-   a node where sides meet at an edge, or at walls of several conditions, has no velocity along any
-   of their normals
-------------------------------------------------------------------------- */
-
+/** A node where sides meet at an edge, or at walls of several conditions, has no velocity along any
+ *  of their normals. */
 void MPMMeshForces::add_slip(int condition)
 {
   for (const auto &face : mesh.faces_of(list[condition].given.group)) {
@@ -128,8 +120,6 @@ void MPMMeshForces::add_sides(int condition)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMMeshForces::init(const std::string &user)
 {
   varies = false;
@@ -149,10 +139,7 @@ void MPMMeshForces::evaluate()
   });
 }
 
-/* ----------------------------------------------------------------------
-   each side once: by the rank that looks at its cell, for all that have its nodes
-------------------------------------------------------------------------- */
-
+/** Each side once: by the rank that looks at its cell, for all that have its nodes. */
 void MPMMeshForces::follow(const std::vector<char> &cells, const std::vector<MeshVector> &positions,
                            MPMMeshRanks &ranks)
 {
@@ -179,8 +166,6 @@ void MPMMeshForces::follow(const std::vector<char> &cells, const std::vector<Mes
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMMeshForces::warn_of_lost_loads(const std::string &user,
                                        const std::function<bool(int)> &carries) const
 {
@@ -203,8 +188,6 @@ void MPMMeshForces::warn_of_lost_loads(const std::string &user,
                      list[k].given.kind == MPMMeshCondition::PRESSURE ? "pressure" : "traction",
                      list[k].given.group, 100.0 * (1.0 - borne[k] / all[k]));
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMMeshForces::add_load(int node, double share, bool count, double *f)
 {

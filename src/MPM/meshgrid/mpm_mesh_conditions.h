@@ -36,19 +36,34 @@ struct MPMMeshCondition {
   MPM_NS::NumberOrVariable value[3];
 };
 
-/** Returns the group for which conditions of this kind are given twice with one of the first n
- *  values in both, or an empty string. */
+/** Adds a keyword for conditions of a kind. next: the one that its values are read to. */
 template <class Condition>
-std::string group_given_twice(const std::vector<Condition> &all, int kind, int n = 1)
+void add_condition(MPM_NS::Options &o, const std::string &keyword,
+                   const std::vector<MPM_NS::OptionValue> &values, decltype(Condition::kind) kind,
+                   Condition &next, std::vector<Condition> &conditions)
+{
+  o.add(keyword, values)
+      .then([kind, &next, &conditions] {
+        next.kind = kind;
+        conditions.push_back(next);
+        next = {};
+      })
+      .standard("none");
+}
+
+/** Adds the rule that conditions of a kind are not given twice for a group with one of the first n
+ *  values in both. */
+template <class Condition>
+void refuse_twice(MPM_NS::OptionRules &rules, const std::vector<Condition> &all, int kind,
+                  const std::string &keyword, const std::string &advice, int n = 1)
 {
   for (std::size_t k = 0; k < all.size(); k++)
     for (std::size_t j = 0; j < k; j++) {
       if (all[j].kind != kind || all[k].kind != kind || all[j].group != all[k].group) continue;
       bool same = false;
       for (int d = 0; d < n; d++) same = same || (all[j].value[d].given && all[k].value[d].given);
-      if (same) return all[k].group;
+      rules.push_back({same, keyword, "is given twice for group " + all[k].group + ": " + advice});
     }
-  return "";
 }
 
 /** Conditions on nodes and loads on sides of a mesh. */

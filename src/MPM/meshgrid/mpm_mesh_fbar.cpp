@@ -21,6 +21,43 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+void MPMMeshMeans::clear(int ngroup, int nvalue)
+{
+  groups = ngroup;
+  width = 1 + nvalue;
+  sums.resize(row(groups, 0));
+  for (int group = 0; group < groups; group++)
+    for (const int node : ranks.nodes) std::fill_n(&sums[row(group, node)], width, 0.0);
+}
+
+void MPMMeshMeans::add(int group, const BackgroundMesh::Place &place, double weight,
+                       const double *values)
+{
+  const auto &cell = mesh.cells[place.cell];
+  for (int k = 0; k < cell.nnode; k++) {
+    double *const to = &sums[row(group, cell.node[k])];
+    const double w = weight * place.N[k];
+    to[0] += w;
+    for (int j = 1; j < width; j++) to[j] += w * values[j - 1];
+  }
+}
+
+void MPMMeshMeans::sum()
+{
+  for (int group = 0; group < groups; group++) ranks.sum(&sums[row(group, 0)], width);
+}
+
+double MPMMeshMeans::mean(int group, const BackgroundMesh::Place &place, int k) const
+{
+  const auto &cell = mesh.cells[place.cell];
+  double all = 0.0;
+  for (int j = 0; j < cell.nnode; j++) {
+    const double *const from = &sums[row(group, cell.node[j])];
+    if (from[0] > 0.0) all += place.N[j] * from[1 + k] / from[0];
+  }
+  return all;
+}
+
 MPMMeshFbar::MPMMeshFbar(MPMMeshBody &body) : body(body), means(body.mesh, body.ranks) {}
 
 /** Of a matrix whose third row and column are those of identity in 2d. */
@@ -29,17 +66,14 @@ static double determinant_in(int dim, const double *F)
   return dim == 3 ? determinant(F) : F[0] * F[4] - F[1] * F[3];
 }
 
-/* ----------------------------------------------------------------------
-   F-bar (E.A. de Souza Neto, D. Peric, M. Dutko, D.R.J. Owen, Int. J. Solids Struct. 33 (1996)
-   3277) with means <> over the points around, which are symmetric: the sum over points of w a <b>
-   is that of w <a> b. In the total frame the strain of a point has the volume ratio <J> with the J
-   that the motion of its nodes has there, weighted by initial volumes. The change of the stored
-   energy is the sum of V0 tau : D with the dilatation d<J>/<J>, so that the force has the mean
-   stress J <p> of Cauchy stresses p, and gradients with the motion of the nodes. In the updated
-   frame it is the change of volume in the step that is averaged, by present volumes. In 2d these
-   are changes in the plane, and p is the mean of the stresses there
-------------------------------------------------------------------------- */
-
+/** F-bar (E.A. de Souza Neto, D. Peric, M. Dutko, D.R.J. Owen, Int. J. Solids Struct. 33 (1996)
+ *  3277) with means <> over the points around, which are symmetric: the sum over points of w a <b>
+ *  is that of w <a> b. In the total frame the strain of a point has the volume ratio <J> with the J
+ *  that the motion of its nodes has there, weighted by initial volumes. The change of the stored
+ *  energy is the sum of V0 tau : D with the dilatation d<J>/<J>, so that the force has the mean
+ *  stress J <p> of Cauchy stresses p, and gradients with the motion of the nodes. In the updated
+ *  frame it is the change of volume in the step that is averaged, by present volumes. In 2d these
+ *  are changes in the plane, and p is the mean of the stresses there. */
 void MPMMeshFbar::find_stress()
 {
   const int dim = body.mesh.dim, ngroup = body.count_bodies() * (int) body.materials.size();
@@ -102,12 +136,9 @@ void MPMMeshFbar::find_strain(const std::vector<MeshVector> &velocities)
   }
 }
 
-/* ----------------------------------------------------------------------
-   The velocity gradient of a point, column-major, becomes that of the motion with the mean change
-   of volume. In the total frame it is the change of F in the step, where the nodes have moved on
-   already
-------------------------------------------------------------------------- */
-
+/** The velocity gradient of a point, column-major, becomes that of the motion with the mean change
+ *  of volume. In the total frame it is the change of F in the step, where the nodes have moved on
+ *  already. */
 void MPMMeshFbar::scale(int i, double *L) const
 {
   const int dim = body.mesh.dim;
@@ -133,9 +164,4 @@ void MPMMeshFbar::scale(int i, double *L) const
   for (int d = 0; d < dim; d++)
     for (int e = 0; e < dim; e++)
       L[dim * e + d] = (scale * product(step, F, d, e) - F[3 * d + e]) / dt;
-}
-
-double MPMMeshFbar::memory_usage() const
-{
-  return means.memory_usage() + (double) (volumetric.capacity() * sizeof(Volumetric));
 }

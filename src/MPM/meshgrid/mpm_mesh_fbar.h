@@ -9,14 +9,44 @@
 #ifndef LMP_MPM_MESH_FBAR_H
 #define LMP_MPM_MESH_FBAR_H
 
+#include "base/mpm_lists.h"
 #include "mesh/background_mesh.h"
 #include "meshgrid/mpm_mesh_conditions.h"
-#include "meshgrid/mpm_mesh_means.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
 class MPMMeshBody;
+class MPMMeshRanks;
+
+/** Means over the points around each point of a mesh,
+ *      <q>_p = sum_i N_ip (sum_q N_iq w_q q_q)/(sum_q N_iq w_q)
+ *  separately for groups of points that do not influence each other. */
+class MPMMeshMeans {
+ public:
+  MPMMeshMeans(const MPM_NS::BackgroundMesh &mesh, MPMMeshRanks &ranks) : mesh(mesh), ranks(ranks)
+  {
+  }
+
+  /** Resets the sums, for this number of groups and of values. */
+  void clear(int ngroup, int nvalue);
+  /** Adds the values of a point of a group with this weight. */
+  void add(int group, const MPM_NS::BackgroundMesh::Place &, double weight, const double *values);
+  /** Sums over ranks. Collective. */
+  void sum();
+  /** Mean of value k at a point. */
+  double mean(int group, const MPM_NS::BackgroundMesh::Place &, int k) const;
+  double memory_usage() const { return bytes_of(sums); }
+
+ private:
+  const MPM_NS::BackgroundMesh &mesh;
+  MPMMeshRanks &ranks;
+  int width = 1, groups = 0;
+  // [group][node][width]: sum of weights, then sums of weight times value
+  std::vector<double> sums;
+
+  std::size_t row(int group, int node) const { return width * (group * mesh.nodes.size() + node); }
+};
 
 /** Averages of volume changes and of the mean stress over the points around, against volumetric
  *  locking (F-bar). */
@@ -33,7 +63,7 @@ class MPMMeshFbar {
   /** Makes the velocity gradient L of a point, column-major, that of the motion with the mean
    *  change of volume. */
   void scale(int i, double *L) const;
-  double memory_usage() const;
+  double memory_usage() const { return means.memory_usage() + bytes_of(volumetric); }
 
  private:
   struct Volumetric {

@@ -8,16 +8,14 @@
 
 #include "meshgrid/mpm_mesh_ranks.h"
 
+#include "base/mpm_lists.h"
 #include "comm.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
 
-/* ----------------------------------------------------------------------
-   all ranks tell each other what they have, one bit for each node
-------------------------------------------------------------------------- */
-
+/** All ranks tell each other what they have, one bit for each node. */
 void MPMMeshRanks::find(const std::vector<char> &mine)
 {
   const std::size_t n = mine.size(), nbyte = (n + 7) / 8;
@@ -53,8 +51,6 @@ void MPMMeshRanks::find(const std::vector<char> &mine)
   for (const int i : nodes)
     if (is_shared[i]) shared.push_back(i);
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Values of the ranks that share nodes with this one go to in. */
 void MPMMeshRanks::exchange(const double *values, int width, const int *row)
@@ -134,9 +130,7 @@ void MPMMeshRanks::largest(double *values, int width, int parts, const int *row)
 
 double MPMMeshRanks::memory_usage() const
 {
-  double bytes = (double) nodes.capacity() * sizeof(int) + (double) own.capacity() * sizeof(double);
-  for (const auto &n : neighbors)
-    bytes += (double) n.nodes.capacity() * sizeof(int) +
-        (double) (n.in.capacity() + n.out.capacity()) * sizeof(double);
+  double bytes = bytes_of(nodes, own);
+  for (const auto &n : neighbors) bytes += bytes_of(n.nodes, n.in, n.out);
   return bytes;
 }

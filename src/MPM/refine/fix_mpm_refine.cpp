@@ -32,10 +32,7 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/refine COARSE FINE ...
-------------------------------------------------------------------------- */
-
+/** fix ID all mpm/refine COARSE FINE ... */
 FixMPMRefine::FixMPMRefine(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (igroup != 0)
@@ -57,10 +54,7 @@ FixMPMRefine::FixMPMRefine(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
 
 FixMPMRefine::~FixMPMRefine() = default;
 
-/* ----------------------------------------------------------------------
-   missing fields are found here; with them, they call init_action()
-------------------------------------------------------------------------- */
-
+/** Missing fields are found here; with them, they call init_action(). */
 void FixMPMRefine::init()
 {
   for (const auto &name : ids)
@@ -92,7 +86,6 @@ void FixMPMRefine::init_action()
   }
 
   // records of nodes are added
-
   const bool keep = std::any_of(fields.begin(), fields.end(), [&](const auto *field) {
     return field->keeps_old_velocities() ||
         adds_change(field->options.transfer) != adds_change(fields[0]->options.transfer);
@@ -156,11 +149,8 @@ static std::string in_place_of(const std::string &style)
   return "use one fix mpm for all of the body, with the node spacing that its finest part needs";
 }
 
-/* ----------------------------------------------------------------------
-   what acts on nodes acts on those of all fields, and tied ones follow; what exchanges something between places would miss
-   those
-------------------------------------------------------------------------- */
-
+/** What acts on nodes acts on those of all fields, and tied ones follow; what exchanges something
+ *  between places would miss those. */
 void FixMPMRefine::check_others(const MPMPlan &plan) const
 {
   for (auto *action : plan.actions) {
@@ -187,11 +177,9 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   Contact is at nodes, on each lattice between the fields that have it. It is seen everywhere if another body has a field on each
-   lattice from the coarsest of this one to its own finest: what is finer in this one is tied where the other one is
-------------------------------------------------------------------------- */
-
+/** Contact is at nodes, on each lattice between the fields that have it. It is seen everywhere if
+ *  another body has a field on each lattice from the coarsest of this one to its own finest: what
+ *  is finer in this one is tied where the other one is. */
 void FixMPMRefine::check_contact(const MPMPlan &plan, const FixMPMContact &contact) const
 {
   for (const auto &a : ids)
@@ -252,7 +240,8 @@ void FixMPMRefine::check_contact_with(const MPMPlan &plan, const FixMPMContact &
                    id, theirs, ids[0], contact.id, ids[0]);
 }
 
-/** All that touch this body, or what touches it: where several bodies meet, all must have the same functions. */
+/** All that touch this body, or what touches it: where several bodies meet, all must have the same
+ *  functions. */
 void FixMPMRefine::find_neighbors(const MPMPlan &plan)
 {
   neighbors.clear();
@@ -289,8 +278,6 @@ void FixMPMRefine::init_physics(MPMPlan &plan)
   check_others(plan);
   find_neighbors(plan);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMRefine::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
@@ -344,12 +331,9 @@ void FixMPMRefine::find_tied()
   }
 }
 
-/* ----------------------------------------------------------------------
-   Laws of damage spend the energy of a crack that is one cell of their own lattice wide. Next to the rim functions are those of two
-   lattices, and cracks are as wide as the larger cells. Points that have lost half of their stress and see nodes that
-   are tied, or parents of these
-------------------------------------------------------------------------- */
-
+/** Laws of damage spend the energy of a crack that is one cell of their own lattice wide. Next to
+ *  the rim functions are those of two lattices, and cracks are as wide as the larger cells. Points
+ *  that have lost half of their stress and see nodes that are tied, or parents of these. */
 bigint FixMPMRefine::cracked_at_rim(const MPMTwoScale &pair) const
 {
   static constexpr double CRACKED = 0.5;
@@ -397,10 +381,7 @@ void FixMPMRefine::post_run()
   }
 }
 
-/* ----------------------------------------------------------------------
-   each field has nodes for the sake of the finer ones: all are renewed together
-------------------------------------------------------------------------- */
-
+/** Each field has nodes for the sake of the finer ones: all are renewed together. */
 bool FixMPMRefine::is_stale() const
 {
   return std::any_of(fields.begin(), fields.end(),
@@ -473,10 +454,7 @@ void FixMPMRefine::topology_changed(MPMField &field)
   for (auto &pair : pairs) pair->topology_changed();
 }
 
-/* ----------------------------------------------------------------------
-   for each pair of fields: nodes of the finer one that are tied, and those that are free
-------------------------------------------------------------------------- */
-
+/** For each pair of fields: nodes of the finer one that are tied, and those that are free. */
 double FixMPMRefine::compute_vector(int n)
 {
   double mine = 0.0, all;

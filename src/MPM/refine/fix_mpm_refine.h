@@ -29,8 +29,8 @@ namespace LAMMPS_NS {
 class FixMPMContact;
 class MPMTwoScale;
 
-/** Joins the points of several fields (fix mpm) to one body. Each field has half the node spacing of the previous one; see
- *  MPMTwoScale for each pair of them. */
+/** Joins the points of several fields (fix mpm) to one body. Each field has half the node spacing
+ *  of the previous one; see MPMTwoScale for each pair of them. */
 class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction, public MPMRefinedBody {
  public:
   FixMPMRefine(class LAMMPS *, int, char **);
@@ -48,7 +48,6 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction, public
   double memory_usage() override;
 
   // of both MPMPhysics and MPMNodeAction
-
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;
   bool looks_beyond_points() const override { return true; }    // parents of nodes in reach
@@ -70,8 +69,9 @@ class FixMPMRefine : public Fix, public MPMPhysics, public MPMNodeAction, public
   std::vector<std::string> ids;    // IDs of the fixes mpm, from the coarsest on
   std::vector<MPMField *> fields;
   std::vector<std::unique_ptr<MPMTwoScale>> pairs;    // each field and the next finer one
-  struct
-      Neighbor {    // a field of another body that may touch this body, on the lattice of a field that is not the finest
+  // a field of another body that may touch this body, on the lattice of a field that is not the
+  // finest
+  struct Neighbor {
     MPMField *field;
     int level;
     MPMReach reach;

@@ -6,24 +6,25 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Along one axis, in quarters of the coarse node spacing, coarse node j is at 4 j, fine node i at p = offset + 2 i. Weights
-   of its parents by their distance |p - 4 j|, which are those of the two-scale relation of B-splines:
+/* Along one axis, in quarters of the coarse node spacing, coarse node j is at 4 j, fine node i at p
+   = offset + 2 i. Weights of its parents by their distance |p - 4 j|, which are those of the
+   two-scale relation of B-splines:
 
      linear     0: 1      2: 1/2                     (nodes of both lattices are at the same places)
-     quadratic  1: 3/4    3: 1/4                     (fine nodes are a quarter of the coarse spacing off coarse ones)
+     quadratic  1: 3/4    3: 1/4                     (fine nodes are a quarter of a spacing off)
      cubic      0: 3/4    2: 1/2    4: 1/8
 
-   Momentum of a fine node is sum_p N_ip m_p (v_p + C_p (x_i - x_p)). To the coarse node j the points would have given
-   sum_p sum_i T_ij N_ip m_p (v_p + C_p (x_j - x_p)), which differs by sum_i T_ij M_i (x_j - x_i), M_i = sum_p N_ip m_p C_p.
-   Without this a velocity that is linear in space would not stay so: coarse nodes at the rim of the fine points have
-   masses on one side of them, and would get the velocity of the center of these. As sum_j T_ij (x_j - x_i) = 0, the momentum
-   is the same with it.
-------------------------------------------------------------------------- */
+   Momentum of a fine node is sum_p N_ip m_p (v_p + C_p (x_i - x_p)). To the coarse node j the
+   points would have given sum_p sum_i T_ij N_ip m_p (v_p + C_p (x_j - x_p)), which differs by sum_i
+   T_ij M_i (x_j - x_i), M_i = sum_p N_ip m_p C_p. Without this a velocity that is linear in space
+   would not stay so: coarse nodes at the rim of the fine points have masses on one side of them,
+   and would get the velocity of the center of these. As sum_j T_ij (x_j - x_i) = 0, the momentum is
+   the same with it. */
 
 #include "refine/mpm_two_scale.h"
 
 #include "atom.h"
+#include "base/mpm_lists.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_point_map.h"
@@ -70,8 +71,6 @@ struct Axis {
 };
 }    // namespace
 
-/* ---------------------------------------------------------------------- */
-
 static double offset_of(const MPMField &coarse, const MPMField &fine, int axis)
 {
   return 4.0 * (fine.lattice.origin[axis] - coarse.lattice.origin[axis]) / coarse.lattice.h;
@@ -109,16 +108,11 @@ void MPMTwoScale::add_neighbor(MPMField &field)
 
 double MPMTwoScale::memory_usage() const
 {
-  return tied.capacity() * sizeof(Tied) + parents.capacity() * sizeof(Parent) +
-      tied_of.capacity() * sizeof(int) + block_is_tied.capacity() +
-      shares.capacity() * sizeof(Share) + (affine.capacity() + moments.capacity()) * sizeof(double);
+  return bytes_of(tied, parents, tied_of, block_is_tied, shares, affine, moments);
 }
 
-/* ----------------------------------------------------------------------
-   parents are at most one coarse node away, and so are the cells that a fine node reaches; those of a lattice that is some
-   levels finer are parents of parents
-------------------------------------------------------------------------- */
-
+/** Parents are at most one coarse node away, and so are the cells that a fine node reaches; those
+ *  of a lattice that is some levels finer are parents of parents. */
 void MPMTwoScale::extend_coarse(const MPMField &finer, int levels) const
 {
   constexpr int FAR = 2;
@@ -185,11 +179,9 @@ void MPMTwoScale::mark_points(const Marks &of)
   field.nodes.sum(of.cells);
 }
 
-/* ----------------------------------------------------------------------
-   Cells with points of the coarse field, and of other bodies on its lattice. Where there is a field that is coarser still, its cells
-   count, too: what the fine nodes of this pair reach of them has no free node of the field between
-------------------------------------------------------------------------- */
-
+/** Cells with points of the coarse field, and of other bodies on its lattice. Where there is a
+ *  field that is coarser still, its cells count, too: what the fine nodes of this pair reach of
+ *  them has no free node of the field between. */
 void MPMTwoScale::mark_cells()
 {
   for (const auto &m : marks) mark_points(m);
@@ -232,7 +224,6 @@ void MPMTwoScale::find_tied()
     if (!block.reached) continue;
 
     // cells that the block reaches, which are few
-
     constexpr int MOST = 10;
     int low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, c[3];
     for (int d = 0; d < dim; d++) {
@@ -295,8 +286,6 @@ void MPMTwoScale::find_tied()
   lists_valid = true;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMTwoScale::find_shares()
 {
   const MPMStencil stencil(fine);
@@ -321,8 +310,8 @@ void MPMTwoScale::find_shares()
   }
 }
 
-/** Sums of N_ip w_p times a row of each point at tied nodes, with what nodes of this lattice have got from finer ones that are tied to
- *  them. */
+/** Sums of N_ip w_p times a row of each point at tied nodes, with what nodes of this lattice have
+ *  got from finer ones that are tied to them. */
 template <class Weight>
 void MPMTwoScale::sum_at_tied(const Weight &weight, const MPMRows &rows, int width,
                               std::vector<double> &sums, const MPMTwoScale *after,
@@ -387,8 +376,6 @@ void MPMTwoScale::from_parents()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMTwoScale::sums_to_parents(std::vector<double> &of_fine, std::vector<double> &of_coarse,
                                   int width) const
 {
@@ -433,8 +420,6 @@ void MPMTwoScale::greatest_from_parents(const std::vector<double> &of_coarse,
     for (int k = t.first; k < t.last; k++)
       of_fine[t.node] = std::max(of_fine[t.node], of_coarse[parents[k].node]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMTwoScale::share_of_thin(const std::vector<MPMField *> &body) const
 {
