@@ -23,16 +23,6 @@ namespace {
 
 using Column = double[BATCH];
 
-MPM_INLINE void transpose(Vec<4> r[4])
-{
-  const Vec<4> a = shuffle<0, 4, 2, 6>(r[0], r[1]), b = shuffle<1, 5, 3, 7>(r[0], r[1]);
-  const Vec<4> c = shuffle<0, 4, 2, 6>(r[2], r[3]), d = shuffle<1, 5, 3, 7>(r[2], r[3]);
-  r[0] = shuffle<0, 1, 4, 5>(a, c);
-  r[1] = shuffle<0, 1, 4, 5>(b, d);
-  r[2] = shuffle<2, 3, 6, 7>(a, c);
-  r[3] = shuffle<2, 3, 6, 7>(b, d);
-}
-
 /** The first COLUMNS columns of the points p..p+3 from rows of WIDTH reals, times scale. */
 template <int WIDTH, int COLUMNS = WIDTH>
 MPM_INLINE void rows_to_columns(const double *row, Column *column, int p, double scale)
