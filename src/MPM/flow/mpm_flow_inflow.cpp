@@ -47,7 +47,7 @@ MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, int group
   }
 }
 
-/** Finds the faces across a inlet, and the share of each that is in its section, from the columns
+/** Finds the faces across an inlet, and the share of each that is in its section, from the columns
  *  of its points. */
 void MPMFlowInflow::find_section(Inlet &one) const
 {
@@ -60,7 +60,7 @@ void MPMFlowInflow::find_section(Inlet &one) const
   if (one.axis < 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: into an incompressible flow points must come along an axis of the box, "
-               "not along {:.6g} {:.6g} {:.6g}: use such a normal and mouth",
+               "not along {:.6g} {:.6g} {:.6g}: use such a normal and inlet",
                one.fix->style, one.fix->id, inlet.normal[0], inlet.normal[1], inlet.normal[2]);
   one.side = inlet.normal[one.axis] > 0.0 ? 1 : 0;
   const double middle = (inlet.middle()[one.axis] - cells.lattice.origin[one.axis]) / h,
@@ -73,7 +73,7 @@ void MPMFlowInflow::find_section(Inlet &one) const
   }
   if (one.first > one.last)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix {} {}: the mouth ends in the first cell at a wall: make its region longer",
+               "Fix {} {}: the inlet ends in the first cell at a wall: make its region longer",
                one.fix->style, one.fix->id);
 
   std::map<std::array<int, 2>, double> areas;
@@ -172,7 +172,7 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
   found = true;
 }
 
-/** Holds all faces of a cell that are along a inlet. */
+/** Holds all faces of a cell that are along an inlet. */
 void MPMFlowInflow::clamp(const Inlet &inlet, int at, const Section &part)
 {
   const int dim = cells.lattice.dim;

@@ -9,7 +9,6 @@
 #include "implicit/mpm_constraints.h"
 
 #include "contact/mpm_ties.h"
-#include "field/mpm_body_contact.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_trial_contact.h"
@@ -118,7 +117,7 @@ bool MPMConstraints::is_projection()
 
 void MPMConstraints::act(double *v)
 {
-  for (auto *contact : contacts) contact->forget_pushes();
+  for (auto *contact : contacts) contact->clear_impulses();
   act_by_walls(v);
   if (touching) ties->close(v);
 }
@@ -362,12 +361,12 @@ bool MPMConstraints::find_carried_points(std::vector<double> &left) const
 
 void MPMConstraints::carry(double *force) const
 {
-  for (auto *contact : contacts) contact->bear_carried(nodes.field, force);
+  for (auto *contact : contacts) contact->constrain_carried(nodes.field, force);
 }
 
 void MPMConstraints::set_final_velocities(const double *v, double share) const
 {
-  for (auto *contact : contacts) contact->foresee_velocities(v, share);
+  for (auto *contact : contacts) contact->predict_velocities(v, share);
 }
 
 void MPMConstraints::take_stop() const

@@ -148,7 +148,7 @@ class MPMTangent : protected Pointers {
   // law and the round-off of its stress are both some 1e-10 of its tangent
   static constexpr double DIFFERENCE = 6.0e-6;
 
-  // forces between points, see mpm_trial_forces.h; displacements and forces of points [n][3]
+  // forces between points, see MPMTrialForces; displacements and forces of points [n][3]
   std::vector<MPMTrialForces *> between;
   std::size_t nelements = 0;    // the first ones in between; the others are loads
   std::vector<double> point_motion, point_forces, sum_forces;

@@ -15,8 +15,8 @@
 
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_plan.h"
-#include "field/mpm_trial_forces.h"
 #include "implicit/mpm_tangent_gather.h"
 #include "material/batch_kernels.h"
 

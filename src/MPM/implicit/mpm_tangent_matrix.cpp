@@ -15,8 +15,8 @@
 
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_stencil.h"
-#include "field/mpm_trial_forces.h"
 
 #include <algorithm>
 #include <unordered_map>

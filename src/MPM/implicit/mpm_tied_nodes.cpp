@@ -8,9 +8,9 @@
 
 #include "implicit/mpm_tied_nodes.h"
 
-#include "field/mpm_line_ties.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_plan.h"
+#include "field/mpm_trial_contact.h"
 #include "implicit/mpm_constraints.h"
 #include "implicit/mpm_solved_nodes.h"
 #include "math/sets.h"
