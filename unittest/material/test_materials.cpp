@@ -4,7 +4,7 @@
 
 // Constitutive laws, point by point and without a grid, against closed forms.
 
-#include "law/tensor_function.h"
+#include "law/spectral.h"
 #include "material/material_testing.h"
 #include "transfer/kernels.h"
 

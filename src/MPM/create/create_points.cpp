@@ -22,17 +22,14 @@
 #include "fix.h"
 #include "group.h"
 #include "image/body.h"
-#include "input.h"
 #include "irregular.h"
 #include "modify.h"
 #include "region.h"
-#include "variable.h"
 #include "walls/mpm_region_cut.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <vector>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -41,10 +38,6 @@ static constexpr double TOLERANCE = 1.0e-6;    // in spacings, for positions tha
 static constexpr bigint SHARE = 1 << 11;    // sites a rank looks at before points are sent, or ...
 static constexpr bigint PART = 64;          // ... 1/PART of those it has looked at, if that is more
 static constexpr bigint GROWTH = 16;        // room for points grows by 1/GROWTH at least
-
-static const char axis_name[] = "xyz";
-
-/* ---------------------------------------------------------------------- */
 
 CreatePoints::CreatePoints(LAMMPS *lmp) : Command(lmp) {}
 CreatePoints::~CreatePoints() = default;
@@ -156,10 +149,6 @@ void CreatePoints::command(int narg, char **arg)
   }
 }
 
-/* ----------------------------------------------------------------------
-   settings, lattice of sites
-------------------------------------------------------------------------- */
-
 Options CreatePointsOptions::declare(int dim, bool has_radius)
 {
   Options o("create_points");
@@ -262,10 +251,7 @@ void CreatePoints::parse(int narg, char **arg)
   place_sites(options);
 }
 
-/* ----------------------------------------------------------------------
-   the lattice of sites, and what all points have in common
-------------------------------------------------------------------------- */
-
+/** The lattice of sites, and what all points have in common. */
 void CreatePoints::place_sites(const Options &options)
 {
   const int dim = domain->dimension;
@@ -324,7 +310,7 @@ void CreatePoints::place_sites(const Options &options)
       error->warning(FLERR,
                      "Create_points spacing {:.8g} along {} is wider than the cells of fix "
                      "{} ({:.8g}): there will be cells without points inside the body",
-                     spacing[d], axis_name[d], fix->id(), fix->lattice.h);
+                     spacing[d], "xyz"[d], fix -> id(), fix -> lattice.h);
   }
   find_split(options);
   cut = cut || relax;
@@ -342,11 +328,8 @@ void CreatePoints::find_group(const Options &options, const std::string &name)
   group_bits = group->bitmask[igroup];
 }
 
-/* ----------------------------------------------------------------------
-   look at all sites once, in the order of their numbers, and make the points
-   IDs follow that order; returns the number of points
-------------------------------------------------------------------------- */
-
+/** Looks at all sites once, in the order of their numbers, which the IDs of points follow. Returns
+ *  the number of points. */
 bigint CreatePoints::make_points()
 {
   Range range[3];
@@ -399,8 +382,6 @@ bigint CreatePoints::make_points()
   return npoints;
 }
 
-/* ---------------------------------------------------------------------- */
-
 tagint CreatePoints::largest_tag() const
 {
   tagint mine = 0, all;
@@ -416,10 +397,7 @@ void CreatePoints::check_tags(tagint largest, bigint nmore) const
                MAXTAGINT);
 }
 
-/* ----------------------------------------------------------------------
-   send sites to their owners, where they arrive in the same order in each run
-------------------------------------------------------------------------- */
-
+/** Sends sites to their owners, where they arrive in the same order in each run. */
 void CreatePoints::send_and_make(std::vector<Site> &made)
 {
   std::vector<Site> received;
@@ -443,15 +421,11 @@ void CreatePoints::send_and_make(std::vector<Site> &made)
   for (const auto &site : received) make_point(site);
 }
 
-/* ---------------------------------------------------------------------- */
-
 int CreatePoints::owner(double *x) const
 {
   int unused[3];
   return comm->nprocs == 1 ? 0 : comm->coord2proc(x, unused[0], unused[1], unused[2]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void CreatePoints::make_point(Site site)
 {

@@ -31,7 +31,6 @@ class RelaxedPoints;
 
 namespace LAMMPS_NS {
 
-/** Keywords of create_points for regions. */
 struct CreatePointsOptions {
   static constexpr int MAX_PPC = 1000;
 
@@ -50,7 +49,6 @@ struct CreatePointsOptions {
   std::string split, split_place[3];
   std::string group_id;    ///< group that the points join; empty: none
 
-  /** Adds these keywords to others. */
   void add_to(MPM_NS::Options &, int dimension);
   /** Checks of their values. has_radius: points have a radius (atom_style hybrid sphere mpm). */
   MPM_NS::OptionRules rules(bool has_radius) const;

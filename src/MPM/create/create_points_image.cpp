@@ -33,10 +33,6 @@ static constexpr double TOLERANCE = 1.0e-6;    // relative, of the length of an 
 static constexpr double MAX_SMOOTH = 100.0;    // pixels
 static constexpr double SLIVER = 0.1;          // share of a site that is too small for a point
 
-static const char axis_name[] = "xyz";
-
-/* ---------------------------------------------------------------------- */
-
 void CreatePointsImageOptions::add_to(Options &o, int dim)
 {
   using namespace option;
@@ -149,10 +145,6 @@ Options CreatePointsImageOptions::declare(int dim)
   return o;
 }
 
-/* ----------------------------------------------------------------------
-   checks of the options that need LAMMPS
-------------------------------------------------------------------------- */
-
 /** Maps the words of keyword axes to the axes of the box and their directions. */
 static void set_axes(LAMMPS *lmp, const CreatePointsImageOptions &given, const Options &options,
                      ImageBody &body)
@@ -256,22 +248,20 @@ static void place(LAMMPS *lmp, const CreatePointsImageOptions &given, const Opti
           FLERR, 2,
           "Create_points image {} does not say how long pixels are along {}: use keyword "
           "pixel",
-          file, axis_name[d]);
+          file, "xyz"[d]);
     const double length = body.hi(d) - body.lo[d];
     if (!std::isfinite(length) || body.lo[d] + body.pixel[d] == body.lo[d])
       lmp->error->all(FLERR, 2,
                       "Create_points image {}: pixels of {:.8g} along {} cannot be told apart",
-                      file, body.pixel[d], axis_name[d]);
+                      file, body.pixel[d], "xyz"[d]);
     if (domain->periodicity[d] && length > domain->prd[d] * (1.0 + TOLERANCE))
       lmp->error->all(
           FLERR, 2,
           "Create_points image {} is {:.8g} long along {}, longer than the periodic box with "
           "{:.8g}, and would overlap itself; enlarge the box, or make pixels smaller",
-          file, length, axis_name[d], domain->prd[d]);
+          file, length, "xyz"[d], domain -> prd[d]);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::unique_ptr<ImageBody> LAMMPS_NS::read_image_body(LAMMPS *lmp,
                                                       const CreatePointsImageOptions &given,
@@ -330,10 +320,6 @@ std::unique_ptr<ImageBody> LAMMPS_NS::read_image_body(LAMMPS *lmp,
   return body;
 }
 
-/* ----------------------------------------------------------------------
-   create_points TYPE image FILE keyword value ...: the sites in the bodies of an image
-------------------------------------------------------------------------- */
-
 void CreatePoints::parse_image(int narg, char **arg)
 {
   if (narg < 3) utils::missing_cmd_args(FLERR, "create_points image", error);
@@ -377,11 +363,8 @@ void CreatePoints::parse_image(int narg, char **arg)
   place_sites(options);
 }
 
-/* ----------------------------------------------------------------------
-   share of a site that is in the body of a surface. A site with only a sliver of the body gives it
-   to the neighbor along an axis that has the most of the body, so that no volume is lost
-------------------------------------------------------------------------- */
-
+/** Share of a site that is in the body of a surface. A site with only a sliver of the body gives
+ *  it to the neighbor along an axis that has the most of the body, so that no volume is lost. */
 /** Visits the neighbors of a site along the axes. */
 template <class F> static void for_neighbors(const bigint *s, int dim, F &&visit)
 {
@@ -426,10 +409,7 @@ void CreatePoints::look_at_image(const bigint *s, Site &site) const
   if (!fields.empty()) site.gray = image->image.gray(image->nearest_pixel(x));
 }
 
-/* ----------------------------------------------------------------------
-   "type 1", or "types 1 (20), 2 (30)" when the new points are of several
-------------------------------------------------------------------------- */
-
+/** "type 1", or "types 1 (20), 2 (30)" when the new points are of several. */
 std::string CreatePoints::types_made(int first) const
 {
   std::vector<bigint> mine(atom->ntypes + 1, 0), all(mine);
@@ -445,10 +425,7 @@ std::string CreatePoints::types_made(int first) const
   return n > 1 ? "types " + text : "type " + std::to_string(last);
 }
 
-/* ----------------------------------------------------------------------
-   gray values to properties and history, once fixes have rows for the new points
-------------------------------------------------------------------------- */
-
+/** Gray values to properties and history, once fixes have rows for the new points. */
 void CreatePoints::set_fields(int first)
 {
   if (!field_columns) return;

@@ -25,8 +25,8 @@ class LAMMPS;
 struct CreatePointsImageOptions {
   double pixel[3] = {0.0, 0.0, 0.0};    ///< size of a pixel; 0: as in the file
   double origin[3] = {0.0, 0.0, 0.0};
-  std::string
-      axes[3];    ///< axes of the box with signs for columns, rows, slices; empty: by format
+  /** Axes of the box with signs for columns, rows, slices; empty: by format. */
+  std::string axes[3];
   double threshold = 0.0;
   bool invert = false;
   std::vector<std::pair<double, std::string>> from;    ///< types, each from a gray value on
@@ -44,9 +44,7 @@ struct CreatePointsImageOptions {
   };
   std::vector<Field> fields;
 
-  /** Adds these keywords to others. */
   void add_to(MPM_NS::Options &, int dimension);
-  /** Checks of their values. */
   MPM_NS::OptionRules rules() const;
   /** The keywords of this struct alone, for the manual. */
   MPM_NS::Options declare(int dimension);

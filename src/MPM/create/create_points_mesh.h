@@ -11,15 +11,13 @@
 
 // create_points TYPE mesh FILE and create_points TYPE elements FILE: keywords, and the points.
 
-#include "create/mpm_mesh_fields.h"
+#include "create/mpm_point_columns.h"
 #include "declare/option.h"
 #include "elements/mpm_elements_options.h"
 #include "pointers.h"
 
 #include <array>
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace MPM_NS {
 struct Mesh;
@@ -27,20 +25,49 @@ struct Mesh;
 
 namespace LAMMPS_NS {
 
-/** A point that create_points makes. */
-struct CreatePointsSite {
-  static constexpr imageint NO_IMAGE =
-      ((imageint) IMGMAX << IMG2BITS) | ((imageint) IMGMAX << IMGBITS) | IMGMAX;
+/** Properties of the points that create_points makes from the nodes or elements of a mesh. */
+class MPMMeshFields : protected Pointers {
+ public:
+  /** Name of data in a file, the quantity of points that they set, and a factor. */
+  struct Data {
+    std::string name, quantity;
+    double factor = 1.0;
+  };
 
-  double x[3];
-  double volume;
-  tagint tag;
-  int type = 0;                 ///< 0: the type of the command
-  double gray = 0.0;            ///< value of the image
-  imageint image = NO_IMAGE;    ///< of nodes of a mesh, wrapped into the periodic box
+  /** at_nodes: points are nodes, else elements. type: type of all points; with by_type, the type is
+   *  instead the tag of the physical group, or the index of the set in the file if sets have no
+   *  tags. by_group: points join groups with the names of their sets; missing groups are created.
+   *  data: what points get from the file, as from the columns of a table. Stops with an error if
+   *  the file or the simulation lacks something, or if nodes would have two types. */
+  MPMMeshFields(LAMMPS *, const MPM_NS::Mesh &, bool at_nodes, int type, bool by_type,
+                bool by_group, const std::vector<Data> &);
+
+  /** Tells that the next point that this process makes is that of node or element k. */
+  void add(int k) { mine.push_back(k); }
+
+  void set(int first);
+
+  /** Volume of node or element k relative to its initial volume. */
+  double jacobian(int k) const;
+
+  /** Columns that the points get; none of them is a position or a volume. */
+  const MPMPointColumns &given() const { return columns; }
+
+  std::string types() const;
+
+ private:
+  bool at_nodes;
+  std::vector<int> mine, type,
+      bits;    // by node or element; type is empty if all have the type of the command
+  MPMPointColumns columns;
+  std::vector<double> rows;    // values of all nodes or elements
+  int only_type;
+
+  void find_types(const MPM_NS::Mesh &);
+  void find_groups(const MPM_NS::Mesh &);
+  void find_data(const MPM_NS::Mesh &, const Data &, std::vector<std::vector<double>> &);
 };
 
-/** Keywords of create_points for meshes. */
 struct CreatePointsMeshOptions {
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
   std::string part;           ///< physical group of the mesh; empty: all of it

@@ -6,10 +6,9 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   create_points ... relax N: points that follow the surface of a region, with equal volumes Samples
-   of the body are spread over the ranks, in integers, so that all of them find the same points
-------------------------------------------------------------------------- */
+// create_points ... relax N: points that follow the surface of a region, with equal volumes.
+// Samples of the body are spread over the ranks, in integers, so that all of them find the same
+// points.
 
 #include "create/create_points.h"
 
@@ -36,10 +35,7 @@ static constexpr double ENOUGH = 0.5;    // share of a site inside, for a point 
 static constexpr double SAME = 1.0e-5;
 static constexpr int64_t MOST_POINTS = 100000000;
 
-/* ----------------------------------------------------------------------
-   samples of the part of a site that is in the region
-------------------------------------------------------------------------- */
-
+/** Samples of the part of a site that is in the region. */
 void CreatePoints::add_relaxed_site(const bigint *s, const bigint *first,
                                     RelaxedPoints &relaxed) const
 {
@@ -111,10 +107,7 @@ void CreatePoints::add_relaxed_site(const bigint *s, const bigint *first,
   if (volume >= inside) relaxed.add_site(at, m, marks, volume, move);
 }
 
-/* ----------------------------------------------------------------------
-   points start where most of a site is inside, and are relaxed; returns their number
-------------------------------------------------------------------------- */
-
+/** Points start where most of a site is inside, and are relaxed; returns their number. */
 bigint CreatePoints::make_relaxed_points()
 {
   Range range[3];

@@ -38,12 +38,7 @@ static constexpr double MAX_INDEX = 1.0e15;       // largest index of a lattice 
 static constexpr double MAX_SITES = 9.0e18;       // most sites that a command looks at
 static constexpr bigint MAX_COUNT = 200000000;    // sites per rank looked at outside the box
 
-static const char axis_name[] = "xyz";
-
-/* ----------------------------------------------------------------------
-   keyword split: which sites are divided, by a variable of their position
-------------------------------------------------------------------------- */
-
+/** Keyword split: a variable of the position says which sites are divided. */
 void CreatePoints::find_split(const Options &options)
 {
   if (split.empty()) return;
@@ -101,10 +96,7 @@ int CreatePoints::for_parts(const bigint *s,
   return total;
 }
 
-/* ----------------------------------------------------------------------
-   the fix mpm whose lattice is used when the input does not name one
-------------------------------------------------------------------------- */
-
+/** The fix mpm whose lattice is used when the input does not name one. */
 void CreatePoints::find_lattice()
 {
   if (fix) return;
@@ -121,13 +113,10 @@ void CreatePoints::find_lattice()
   }
 }
 
-/* ----------------------------------------------------------------------
-   sites in the box and sites that can be in the region
-   the box is half open: a point on an upper face would belong to no rank
-   on a periodic axis exactly one image of each site is in the range, also when rounding
-   decides on which side of the box a site is (positions are wrapped later)
-------------------------------------------------------------------------- */
-
+/** Finds the sites in the box and those that can be in the region. The box is half open, as a point
+ *  on an upper face would belong to no rank. On a periodic axis exactly one image of each site is
+ *  in the range, also when rounding decides on which side of the box it is (positions are wrapped
+ *  later). */
 void CreatePoints::find_ranges()
 {
   std::array<double, 3> lo, hi;
@@ -171,7 +160,7 @@ void CreatePoints::find_ranges()
         error->warning(FLERR,
                        "Create_points spacing {:.8g} does not divide the length {:.8g} of the box "
                        "along periodic axis {}: points across the boundary are not at this spacing",
-                       spacing[d], domain->prd[d], axis_name[d]);
+                       spacing[d], domain->prd[d], "xyz"[d]);
       }
     } else {
       while (position(d, first) < boxlo) first++;
@@ -202,11 +191,8 @@ double CreatePoints::volume_fraction(const bigint *s) const
   return image->surface ? surface_share(s) : image->type_at(x) > 0;
 }
 
-/* ----------------------------------------------------------------------
-   the point of a cell that the surface of the region may cut, if there is one
-   where cells reach across the face of a box that is not periodic, the center may be beyond it
-------------------------------------------------------------------------- */
-
+/** The point of a cell that the surface of the region may cut, if there is one. Where cells reach
+ *  across the face of a box that is not periodic, the center may be beyond it. */
 bool CreatePoints::cut_site(const bigint *s, Site &site) const
 {
   const auto part = region_cut->point(s, [this](const bigint *other) {
@@ -222,10 +208,7 @@ bool CreatePoints::cut_site(const bigint *s, Site &site) const
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   visit the sites first to last-1 of a range, x fastest
-------------------------------------------------------------------------- */
-
+/** Visits the sites first to last-1 of a range, x fastest. */
 void CreatePoints::for_sites(const Range *range, bigint first, bigint last,
                              const std::function<void(const bigint *s)> &visit) const
 {
@@ -262,10 +245,7 @@ void CreatePoints::begin_cut()
                                               fix && fix->options.axisymmetric, first, last);
 }
 
-/* ----------------------------------------------------------------------
-   refuse, or report, parts of the region outside the box
-------------------------------------------------------------------------- */
-
+/** Refuses, or reports, parts of the region outside the box. */
 void CreatePoints::check_outside()
 {
   bool exceeds = false, empty = false;
@@ -299,13 +279,10 @@ void CreatePoints::check_outside()
     utils::logmesg(lmp, "Create_points leaves out {} points of {} outside the box\n", count, what);
 }
 
-/* ----------------------------------------------------------------------
-   refuse, or report, new points close to existing material points. An existing point is closer than half a spacing along all axes
-   to one site only, that of the cell of the site lattice that it is in: no other points need to be
-   looked at. A body whose points have a share of the volume is meant to be in the same place as one
-   in another field.
-------------------------------------------------------------------------- */
-
+/** Refuses, or reports, new points close to existing material points. An existing point is closer
+ *  than half a spacing along all axes to one site only, that of the cell of the site lattice
+ *  that it is in: no other points need to be looked at. A body whose points have a share of the
+ *  volume is meant to be in the same place as one in another field. */
 /** Does atom i belong to the body of the new points? It does if it is in a field that they are in
  *  or, where they are in no field yet, if it has their type. */
 bool CreatePoints::same_body(int i) const
@@ -365,11 +342,8 @@ void CreatePoints::check_overlap()
   if (comm->me == 0) error->warning(FLERR, "Create_points makes overlapping bodies: {}", message);
 }
 
-/* ----------------------------------------------------------------------
-   position of the point of a site: the site's, displaced by jitter, inside the box. The random
-   number comes from the site and the seed alone
-------------------------------------------------------------------------- */
-
+/** Position of the point of a site: the site's, displaced by jitter, inside the box. The random
+ *  number comes from the site and the seed alone. */
 void CreatePoints::point_position(const bigint *s, double *x) const
 {
   for (int d = 0; d < 3; d++) {
@@ -388,10 +362,7 @@ void CreatePoints::point_position(const bigint *s, double *x) const
   domain->remap(x);
 }
 
-/* ----------------------------------------------------------------------
-   sites that are in the box and can be in the region; returns how many there are
-------------------------------------------------------------------------- */
-
+/** Sites that are in the box and can be in the region; returns how many there are. */
 bigint CreatePoints::ranges_in_box(Range *range) const
 {
   double nsite = 1.0;

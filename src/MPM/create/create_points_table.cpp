@@ -24,7 +24,6 @@
 #include "fmt/format.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -52,8 +51,6 @@ using Columns = MPMPointColumns;
 
 static constexpr int CHUNK = 1 << 14;     // rows that are sent at a time
 static constexpr double NEAR = 1.0e-4;    // in edges of a point; closer points are duplicates
-
-/* ---------------------------------------------------------------------- */
 
 Options CreatePointsTableOptions::declare(int dim, bool has_radius)
 {
@@ -109,8 +106,6 @@ Options CreatePointsTableOptions::declare(int dim, bool has_radius)
   return o;
 }
 
-/* ---------------------------------------------------------------------- */
-
 CreatePointsTable::CreatePointsTable(LAMMPS *lmp, const CreatePointsTableOptions &given, int type,
                                      const char *file) :
     Pointers(lmp),
@@ -140,7 +135,7 @@ CreatePointsTable::CreatePointsTable(LAMMPS *lmp, const CreatePointsTableOptions
   ncolumn = columns.size();
 }
 
-void CreatePointsTable::rows(bigint first, int n, std::vector<Point> &some,
+void CreatePointsTable::rows(bigint first, int n, std::vector<CreatePointsSite> &some,
                              std::vector<double> &numbers) const
 {
   some.clear();
@@ -153,10 +148,7 @@ void CreatePointsTable::rows(bigint first, int n, std::vector<Point> &some,
   broadcast(numbers, world);
 }
 
-/* ----------------------------------------------------------------------
-   read on rank 0, where errors are thrown as std::runtime_error
-------------------------------------------------------------------------- */
-
+/** Reads on rank 0, where errors are thrown as std::runtime_error. */
 void CreatePointsTable::read(const CreatePointsTableOptions &given, int type,
                              const std::string &file)
 {
@@ -273,11 +265,8 @@ void CreatePointsTable::make_points(const CreatePointsTableOptions &given, const
         fail(
             fmt::format("row {} has {} = {:.8g}, which {}", row + 1, table.names[c], at(c), wrong));
     }
-    Point point = {{0.0, 0.0, 0.0},
-                   given.volume,
-                   id_column < 0 ? 0 : (bigint) at(id_column),
-                   mine,
-                   CreatePointsSite::NO_IMAGE};
+    CreatePointsSite point = {
+        {0.0, 0.0, 0.0}, given.volume, id_column < 0 ? 0 : (tagint) at(id_column), mine};
     for (int d = 0; d < dim; d++) point.x[d] = given.move[d] + given.scale * at(place[d]);
     double J = 1.0;
     if (nF) {
@@ -340,18 +329,7 @@ void CreatePointsTable::check_points(const std::string &file)
     throw std::runtime_error(file + ": " + what);
   };
   bigint outside = 0;
-  for (auto &point : points) {
-    bool inside = true;
-    for (int d = 0; d < domain->dimension; d++) {
-      const double reach = domain->periodicity[d] ? domain->prd[d] : 0.0;
-      inside =
-          inside && point.x[d] >= domain->boxlo[d] - reach && point.x[d] < domain->boxhi[d] + reach;
-    }
-    if (inside)
-      domain->remap(point.x, point.image);
-    else
-      outside++;
-  }
+  for (auto &point : points) outside += !point.wrap(domain);
   if (outside)
     fail(fmt::format(
         "{} of {} points are outside of the simulation box, along periodic axes by more than its "
@@ -373,17 +351,13 @@ void CreatePointsTable::check_points(const std::string &file)
   warn_of_near_points(file);
 
   if (points[0].tag == 0) return;
-  std::vector<bigint> tags;
+  std::vector<tagint> tags;
   for (const auto &point : points) tags.push_back(point.tag);
   std::sort(tags.begin(), tags.end());
   const auto twice = std::adjacent_find(tags.begin(), tags.end());
   if (twice != tags.end())
     fail(fmt::format("two points have the ID {}: use the keyword ids new", *twice));
 }
-
-/* ----------------------------------------------------------------------
-   rank 0 sends the rows in chunks to all ranks; each rank makes the points in its part of the box
-------------------------------------------------------------------------- */
 
 void CreatePoints::parse_table(int narg, char **arg)
 {
@@ -396,6 +370,8 @@ void CreatePoints::parse_table(int narg, char **arg)
   table = std::make_unique<CreatePointsTable>(lmp, given, type, arg[2]);
 }
 
+/** Rank 0 sends the rows in chunks to all ranks, each of which makes the points in its part of the
+ *  box. */
 bigint CreatePoints::make_table_points()
 {
   const bigint n = table->npoint;
@@ -403,17 +379,18 @@ bigint CreatePoints::make_table_points()
   if (comm->nprocs > 1) comm->coord2proc_setup();
   const std::unordered_set<tagint> taken(atom->tag, atom->tag + atom->nlocal);
   bigint same = 0, all_same;
-  std::vector<CreatePointsTable::Point> some;
+  std::vector<CreatePointsSite> some;
   std::vector<double> numbers;
   for (bigint first = 0; first < n; first += CHUNK) {
     const int count = (int) std::min((bigint) CHUNK, n - first);
     table->rows(first, count, some, numbers);
     if (first == 0 && some[0].tag == 0) check_tags(maxtag, n);
     for (int k = 0; k < count; k++) {
-      Site site = {{some[k].x[0], some[k].x[1], some[k].x[2]}, some[k].volume, 0, some[k].type};
-      site.image = some[k].image;
-      if (atom->tag_enable)
-        site.tag = some[k].tag ? (tagint) some[k].tag : (tagint) (maxtag + first + k + 1);
+      Site site = some[k];
+      if (!atom->tag_enable)
+        site.tag = 0;
+      else if (site.tag == 0)
+        site.tag = (tagint) (maxtag + first + k + 1);
       same += taken.count(site.tag);
       if (owner(site.x) != comm->me) continue;
       make_point(site);

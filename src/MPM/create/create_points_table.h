@@ -24,7 +24,6 @@ struct Table;
 
 namespace LAMMPS_NS {
 
-/** Keywords of create_points for tables. */
 struct CreatePointsTableOptions {
   std::string columns;    ///< names of columns, separated by commas; empty: names in the file
   double scale = 1.0, move[3] = {0.0, 0.0, 0.0};
@@ -54,26 +53,18 @@ class CreatePointsTable : protected Pointers {
    *  none in the file. */
   CreatePointsTable(LAMMPS *, const CreatePointsTableOptions &, int type, const char *file);
 
-  struct Point {
-    double x[3];      ///< in the box
-    double volume;    ///< initial
-    bigint tag;       ///< ID in the file; 0: a new ID
-    int type;
-    imageint image;    ///< periodic image in which the file has the point
-  };
   MPMPointColumns columns;
   bigint npoint = 0;    ///< points on all ranks
 
   /** Points and values [n][width()] of the rows first to first + n - 1, on all ranks.
    *  Collective. */
-  void rows(bigint first, int n, std::vector<Point> &, std::vector<double> &) const;
-  /** Number of columns. */
+  void rows(bigint first, int n, std::vector<CreatePointsSite> &, std::vector<double> &) const;
   int width() const { return ncolumn; }
 
  private:
   int ncolumn = 0;
-  std::vector<Point> points;     // of rank 0
-  std::vector<double> values;    // of rank 0, npoint rows
+  std::vector<CreatePointsSite> points;    // of rank 0; tags are the IDs in the file, 0: new ones
+  std::vector<double> values;              // of rank 0, npoint rows
 
   void read(const CreatePointsTableOptions &, int type, const std::string &file);
   void make_points(const CreatePointsTableOptions &, const MPM_NS::Table &, int type,

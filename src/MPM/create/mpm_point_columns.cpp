@@ -84,7 +84,15 @@ int cut_component(std::string &name)
 
 }    // namespace
 
-/* ---------------------------------------------------------------------- */
+bool CreatePointsSite::wrap(Domain *domain)
+{
+  for (int d = 0; d < 3; d++) {
+    const double reach = domain->periodicity[d] ? domain->prd[d] : 0.0;
+    if (!(x[d] >= domain->boxlo[d] - reach && x[d] < domain->boxhi[d] + reach)) return false;
+  }
+  domain->remap(x, image);
+  return true;
+}
 
 /** d_name, i_name, or of arrays d2_name[k], d2_name:k, of fix property/atom. */
 bool MPMPointColumns::find_property(const std::string &full, Column &column) const
@@ -189,8 +197,6 @@ std::string MPMPointColumns::wrong(int c, double value) const
   return "";
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPointColumns::set(int first, const std::vector<double> &rows) const
 {
   auto *points = MPMPoints::get(atom);
@@ -263,8 +269,6 @@ void MPMPointColumns::set_one(MPMPoints &points, const std::vector<FixMPMMateria
         (((imageint) (image[2] + IMGMAX) & IMGMASK) << IMG2BITS);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string MPMPointColumns::missing() const
 {

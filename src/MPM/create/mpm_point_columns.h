@@ -20,6 +20,23 @@ namespace LAMMPS_NS {
 class FixMPMMaterial;
 struct MPMPoints;
 
+/** A point that create_points makes. */
+struct CreatePointsSite {
+  static constexpr imageint NO_IMAGE =
+      ((imageint) IMGMAX << IMG2BITS) | ((imageint) IMGMAX << IMGBITS) | IMGMAX;
+
+  double x[3];
+  double volume;
+  tagint tag;                   ///< 0: not known yet
+  int type = 0;                 ///< 0: the type of the command
+  double gray = 0.0;            ///< value of the image
+  imageint image = NO_IMAGE;    ///< of nodes of a mesh, wrapped into the periodic box
+
+  /** Moves it into the box; false if it is neither there nor in one of the next periodic images.
+   *  What is farther away is a mistake, and LAMMPS would move it image by image. */
+  bool wrap(class Domain *);
+};
+
 /** Columns of numbers that set the state of new points: velocity, F, stress, mass, radius, image,
  *  history variables of materials, and vectors and arrays of fix property/atom. Components are
  *  named as in compute mpm/atom, such as stress/xy, or NAME:k, as VTK numbers them. Positions,

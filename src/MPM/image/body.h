@@ -49,9 +49,7 @@ struct ImageBody {
   bool below = false;    ///< with a single step: the darker pixels are the body
   std::unique_ptr<const LevelSet> surface;    ///< null: the surface follows the faces of pixels
 
-  /** Number of pixels along axis d of the box. */
   int64_t count(int d) const { return image.n[image_axis[d]]; }
-  /** Upper end of the image along axis d of the box. */
   double hi(int d) const { return lo[d] + pixel[d] * count(d); }
 
   /** The pixel at x[3], or -1 outside the image. A face between two pixels belongs to the upper

@@ -59,7 +59,6 @@ class ImageFile {
 Image read_netpbm(ImageFile &);
 Image read_png(ImageFile &);
 Image read_nrrd(ImageFile &);
-Image read_raw(ImageFile &, const RawLayout &);
 
 }    // namespace MPM_NS
 #endif

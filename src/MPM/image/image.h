@@ -19,10 +19,8 @@
 
 namespace MPM_NS {
 
-/** Types of numbers in image files. */
 enum class ImageKind : int { UINT8, INT8, UINT16, INT16, UINT32, INT32, FLOAT, DOUBLE };
 
-/** Size of a number in bytes. */
 std::size_t image_bytes(ImageKind);
 
 /** Description of an image without its values; plain data, so that it can be sent as bytes. */
@@ -40,7 +38,6 @@ struct ImageLayout {
   std::size_t bytes() const { return pixels() * channels * image_bytes(kind); }
 };
 
-/** An image with its values. */
 struct Image : ImageLayout {
   std::vector<unsigned char> data;    ///< the numbers, in the byte order of this machine
 
@@ -73,7 +70,6 @@ struct SliceRange {
  *  value is not finite, throws std::runtime_error that begins with the name of the file. */
 Image read_image(const std::string &file, const RawLayout &raw = {}, const SliceRange &slices = {});
 
-/** Was this compiled with libpng? */
 bool png_available();
 
 }    // namespace MPM_NS

@@ -33,7 +33,6 @@ class LevelSet {
   LevelSet(const int64_t *n, int dim, const bool *wraps, double width,
            const std::function<double(int64_t)> &value);
 
-  /** Interpolated value at x[dim]. */
   double at(const double *x) const;
 
   /** Volume of the body in a box of the image, in pixels. The box is cut at the centers and the

@@ -16,7 +16,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <memory>
 
 using namespace MPM_NS;
 

@@ -17,6 +17,18 @@
 namespace MPM_NS::law {
 namespace {
 
+// Parameters of a law for orthonormal_axes(). This is a macro because lists cannot be joined.
+#define MPM_AXES_PARAMETERS                                                              \
+  {"axes", "A1X", "1", ANY_NUMBER, 1.0, "axis 1, of any length"},                        \
+      {"axes", "A1Y", "1", ANY_NUMBER, 0.0, "axis 1"},                                   \
+      {"axes", "A1Z", "1", ANY_NUMBER, 0.0, "axis 1"},                                   \
+      {"axes", "A2X", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},                   \
+      {"axes", "A2Y", "1", ANY_NUMBER, 1.0, "vector in the plane 12"},                   \
+      {"axes", "A2Z", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},                   \
+  {                                                                                      \
+    "angle", "THETA", "degrees", ANY_NUMBER, 0.0, "then turns axes 1 and 2 about axis 3" \
+  }
+
   /** Orthonormal axes from two vectors: axis 1 along a, axis 2 in the plane of a and b, axis 3
    *  normal to both. Axes 1 and 2 are then turned about axis 3 by an angle in degrees. axis: the
    *  three unit vectors, [axis][component]. */

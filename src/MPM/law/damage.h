@@ -10,6 +10,7 @@
 #define MPM_LAW_DAMAGE_H
 
 #include "law/kinematics.h"
+#include "math/random.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -61,8 +62,8 @@ namespace {
    *  Law provides:
    *    Law(parameters, batch)
    *    grow(batch, history, i, intact): returns the new D of a point that has not failed (a value
-   *    below the old D means no change) and updates the law's own history AFTER, an enum value: the
-   *    index of after_none in its parameters
+   *      below the old D means no change) and updates the law's own history
+   *    AFTER, an enum value: the index of after_none in its parameters
    */
   template <class Law> struct ScalarDamage : LawDefaults {
     static constexpr bool uses_F = false;
@@ -149,11 +150,267 @@ namespace {
     }
   };
 
-  /** Largest principal undamaged stress. */
   MPM_INLINE double principal(const Intact &intact)
   {
     return intact.mean + largest_eigenvalue(intact.s);
   }
+
+  /** Brittle failure at the largest principal stress (W.J.M. Rankine 1858), either at once or with
+   *  the fracture energy GC of a crack that is one cell wide (Z.P. Bazant, B.H. Oh, Mater. Struct.
+   *  16 (1983) 155). Let w be the energy w_s + w_t that damage may release (see ScalarDamage), and
+   *  w_1 its value when sigma_1 reaches the strength. After that the stress drops linearly with the
+   *  largest r = sqrt(w/w_1) reached in tension:
+   *
+   *    D = 1 - (r_f - r) / [r (r_f - 1)],   r_f = GC / (h w_1)
+   *
+   *  The work of damage, integral of w dD, is w_1 r_f = GC/h in any state of stress. A point with
+   *  w_1 > GC/h would spend more than that; instead it fails at once when it has stored GC/h.
+   *
+   *  With weibull, the strengths of points of reference volume V have the distribution function
+   *
+   *    P = 1 - exp[-(V/V0) (sigma/SIGMA)^M]    (W. Weibull, J. Appl. Mech. 18 (1951) 293)
+   */
+  struct DamageRankine : ScalarDamage<DamageRankine> {
+    static constexpr const char *name = "rankine";
+    static constexpr const char *meaning = "brittle failure at the largest principal stress";
+    enum { STRENGTH_, GC, M, V0, SEED, AFTER };
+    static constexpr Parameter parameters[] = {
+        {"", "SIGMA", "pressure", POSITIVE, REQUIRED, "tensile strength, with weibull its scale"},
+        {"soften energy", "GC", "pressure*length", POSITIVE, 0.0, "fracture energy per area"},
+        {"weibull", "M", "1", POSITIVE, 0.0, "Weibull modulus", OF_NEW_POINTS},
+        {"weibull", "V0", "volume", POSITIVE, 1.0, "reference volume (in 2d per thickness)",
+         OF_NEW_POINTS},
+        {"weibull", "SEED", "1", NOT_NEGATIVE, 0.0, "seed of the random numbers", OF_NEW_POINTS},
+        MPM_AFTER_PARAMETERS};
+    static constexpr HistoryDeclaration history[] = {
+        MPM_DAMAGE_HISTORY,
+        {"random", ZERO, "1", "uniform random number of the point, if weibull is given"},
+        {"opening", ZERO, "1", "largest r since the crack began"},
+        {"ductility", ZERO, "1", "r at which all stress is lost, 0: no crack yet"}};
+    enum { RANDOM = NDAMAGE, OPENING, DUCTILITY, NRANKINE };
+    /** random is stored only with weibull or GC, opening and ductility only with GC. */
+    static constexpr int nhistory(const LawParameters &p)
+    {
+      return p.value[GC] > 0.0 ? NRANKINE : p.value[M] > 0.0 ? OPENING : RANDOM;
+    }
+
+    /** Draws the random number of a point from its position, independent of the number of
+     *  processes. */
+    static void initialize(const LawParameters &p, const double *x, double *history)
+    {
+      if (!(p.value[M] > 0.0)) return;
+      uint64_t state = RANDOM_STEP;
+      for (const double value : {p.value[SEED], x[0], x[1], x[2]})    // adding 0.0 makes 0 of -0
+        state = mix_bits(state + to_bits(value + 0.0) + RANDOM_STEP);
+      history[RANDOM] = (static_cast<double>(state >> 11) + 0.5) * 0x1p-53;
+    }
+
+    double strength, inv_m, inv_v0, crack;
+    bool scatter;
+
+    DamageRankine(const LawParameters &p, const Batch &b) :
+        strength(p.value[STRENGTH_]), inv_m(p.value[M] > 0.0 ? 1.0 / p.value[M] : 1.0),
+        inv_v0(1.0 / p.value[V0]), crack(p.value[GC] / b.h), scatter(p.value[M] > 0.0)
+    {
+    }
+
+    MPM_INLINE double inverse_strength(const Batch &b, History history, int i) const
+    {
+      if (!scatter) return 1.0 / strength;
+      const double weakness = b.vol0[i] * inv_v0 / -log(1.0 - history[RANDOM][i]);
+      return min(pow(weakness, inv_m), 1e60) / strength;
+    }
+
+    MPM_INLINE double grow(const Batch &b, History history, int i, const Intact &intact) const
+    {
+      const double r = principal(intact) * inverse_strength(b, history, i);
+      if (!(crack > 0.0)) return r >= 1.0 ? 1.0 : 0.0;
+
+      const double tension = max(b.volume_energy[i] - history[REST_ENERGY][i], 0.0);
+      const double w = b.shear_energy[i] + (intact.mean > 0.0 ? tension : 0.0);
+      const double ratio = crack * r * r / max(w, 1e-300);    // r_f if the crack began now
+      const double least = ratio > 1.0 ? r - 1.0 : min(r - 1e-300, w - crack);
+      const double begins = least >= 0.0 ? 1.0 : 0.0;
+      const double old = history[DUCTILITY][i];
+      const double rf = old > 0.0 ? old : begins > 0.0 ? max(ratio, 1.0) : 0.0;
+      const double now = r > 0.0 ? std::sqrt(w * rf / crack) : 0.0;
+      const double largest = max(history[OPENING][i], now);
+      history[DUCTILITY][i] = rf;
+      history[OPENING][i] = largest;
+      const double softened = 1.0 - (rf - largest) / max(largest * (rf - 1.0), 1e-300);
+      const double lost = max(largest - rf, 1.0 - rf) >= 0.0 ? 1.0 : softened;
+      return rf > 0.0 ? lost : 0.0;
+    }
+  };
+
+  /** Dynamic fragmentation (D.E. Grady, M.E. Kipp, Int. J. Rock Mech. Min. Sci. 17 (1980) 147): K
+   *  e^M flaws per volume grow with velocity CG at the tensile strain e = sigma_1/E,
+   *
+   *    d(D^(1/3))/dt = (M + 3)/3 alpha^(1/3) e^(M/3),
+   *    alpha = 8 pi CG^3 K / [(M + 1) (M + 2) (M + 3)]
+   *
+   *  At constant strain rate D = alpha rate^M t^(M+3), and fragments have the size 6 CG t/(M + 2),
+   *  where t is the time under tension until D = 1 (also H.J. Melosh, E.V. Ryan, E. Asphaug, J.
+   *  Geophys. Res. 97 (1992) 14735). The strain is that at the end of the step. */
+  struct DamageGradyKipp : ScalarDamage<DamageGradyKipp> {
+    static constexpr const char *name = "grady/kipp";
+    static constexpr const char *meaning = "dynamic fragmentation by growing flaws";
+    enum { K, M, CG, E, AFTER };
+    static constexpr Parameter parameters[] = {
+        {"", "K", "1/volume", POSITIVE, REQUIRED, "flaws per volume at unit strain"},
+        {"", "M", "1", POSITIVE, REQUIRED, "exponent of the strain"},
+        {"", "CG", "velocity", POSITIVE, REQUIRED, "velocity at which cracks grow"},
+        YOUNGS_MODULUS,
+        MPM_AFTER_PARAMETERS};
+    static constexpr HistoryDeclaration history[] = {
+        MPM_DAMAGE_HISTORY,
+        {"fragment", ZERO, "length", "size of fragments, final when the point has failed"}};
+    enum { FRAGMENT = NDAMAGE };
+
+    double inv_E, exponent, log_growth, size;
+
+    DamageGradyKipp(const LawParameters &p, const Batch &b) :
+        inv_E(1.0 / p.value[E]), exponent(p.value[M] / 3.0)
+    {
+      // logarithms, because K may be as large as 1e60
+      const double m = p.value[M], pi = 3.14159265358979323846;
+      const double alpha = log(8.0 * pi / ((m + 1.0) * (m + 2.0) * (m + 3.0))) + log(p.value[K]) +
+          3.0 * log(p.value[CG]);
+      log_growth = (1.0 / 3.0) * alpha + log(max((m + 3.0) / 3.0 * b.dt, 1e-300));
+      size = 6.0 * p.value[CG] * b.dt / (m + 2.0);
+    }
+
+    MPM_INLINE double grow(const Batch &, History history, int i, const Intact &intact) const
+    {
+      const double strain = max(principal(intact), 0.0) * inv_E, D = history[DAMAGED][i];
+      const double more = exp(log_growth + exponent * log(max(strain, 1e-300)));
+      const double side = pow(D, 1.0 / 3.0) + (strain > 0.0 ? min(more, 1.0) : 0.0);
+      history[FRAGMENT][i] += min(strain, 1.0 - D) > 0.0 ? size : 0.0;
+      return side * side * side;
+    }
+  };
+
+  // A ductile law measures the used share of its ductility (row USED of its history, 1: all). The
+  // effect of this share on the stress is the same for all ductile laws.
+
+  constexpr Parameter soften_from = {
+      "soften from",    "START", "1",
+      {0.0, 1.0, true}, 1.0,     "used share of the ductility at which the stress begins to drop"};
+  constexpr Parameter soften_energy = {
+      "soften energy", "GC", "pressure*length",
+      POSITIVE,        0.0,  "plastic work per area of crack, after all ductility is used"};
+  enum { USED = NDAMAGE };
+  constexpr HistoryDeclaration ductility_used = {"used", ZERO, "1",
+                                                 "share of the ductility that is used"};
+
+  /** Stress as a function of the used share of the ductility. The stress is lost at once when the
+   *  share reaches 1; or linearly from START on; or, from 1 on, linearly with the plastic work of
+   *  one cell, which adds up to GC per area. The crack is one cell wide whatever the spacing h of
+   *  the nodes (A. Hillerborg, M. Modeer, P.-E. Petersson, Cem. Concr. Res. 6 (1976) 773; Z.P.
+   *  Bazant, B.H. Oh, Mater. Struct. 16 (1983) 155). */
+  struct Ductile {
+    double start, inv_range, per_work;
+
+    Ductile(const LawParameters &p, const Batch &b, int soften) :
+        start(p.value[soften]), inv_range(1.0 / max(1.0 - start, 1e-12)),
+        per_work(p.value[soften + 1] > 0.0 ? 0.5 * b.h / p.value[soften + 1] : 0.0)
+    {
+    }
+
+    /** Adds more to the used share of the ductility; returns the damage. */
+    MPM_INLINE double use(const Batch &b, History history, int i, double more) const
+    {
+      const double used = min(history[USED][i] + more, 1.0);
+      history[USED][i] = used;
+      const double direct = used >= 1.0 ? 1.0 : (used - start) * inv_range;
+      const double by_work = used >= 1.0 ? history[DAMAGED][i] + per_work * b.plastic_work[i] : 0.0;
+      return per_work > 0.0 ? by_work : direct;
+    }
+  };
+
+  /** Johnson-Cook failure (G.R. Johnson, W.H. Cook, Eng. Fract. Mech. 21 (1985) 31, eq. 7, 8):
+   *
+   *    used = sum de/e_f
+   *    e_f = [D1 + D2 exp(D3 m/q)] [1 + D4 ln max(rate/EPSDOT0, 1)] [1 + D5 T*]
+   *
+   *  with plastic strain e, undamaged mean stress m and equivalent stress q. The triaxiality m/q is
+   *  limited to 1.5, where according to the citation the formula ends. If e_f is below EFMIN, EFMIN
+   *  is used in its place; fits with D1 < 0 reach values of zero or below at high triaxiality. */
+  struct DamageJohnsonCook : ScalarDamage<DamageJohnsonCook> {
+    static constexpr const char *name = "johnson/cook";
+    static constexpr const char *meaning = "Johnson-Cook failure strain";
+    enum { D1, D2, D3, D4, RATE, D5, MELT, REF, EFMIN, SOFTEN, ENERGY, AFTER };
+    static constexpr Parameter parameters[] = {
+        {"", "D1", "1", ANY_NUMBER, REQUIRED, "failure strain at high triaxiality"},
+        {"", "D2", "1", NOT_NEGATIVE, REQUIRED, "part of it that depends on the triaxiality"},
+        {"", "D3", "1", ANY_NUMBER, REQUIRED, "exponent of the triaxiality, commonly negative"},
+        {"rate", "D4", "1", ANY_NUMBER, 0.0, "coefficient of the logarithm of the rate"},
+        {"rate", "EPSDOT0", "1/time", POSITIVE, 1.0, "reference plastic strain rate"},
+        {"temperature", "D5", "1", ANY_NUMBER, 0.0, "coefficient of the temperature"},
+        {"temperature", "TMELT", "temperature", ANY_NUMBER, 1.0, "melting temperature"},
+        {"temperature", "TREF", "temperature", ANY_NUMBER, 0.0, "reference temperature"},
+        {"minimum", "EFMIN", "1", NOT_NEGATIVE, 0.0, "lower limit of the failure strain"},
+        soften_from,
+        soften_energy,
+        MPM_AFTER_PARAMETERS};
+    static constexpr HistoryDeclaration history[] = {MPM_DAMAGE_HISTORY, ductility_used};
+    static constexpr bool needs_temperature(const LawParameters &p) { return p.value[D5] != 0.0; }
+    static constexpr const char *check(const LawParameters &p)
+    {
+      return p.value[MELT] > p.value[REF] ? nullptr : "TMELT must be above TREF";
+    }
+
+    double d1, d2, d3, d4, inv_rate, d5, Tref, inv_range, efmin;
+    const double *temperature;
+    Ductile ductile;
+
+    DamageJohnsonCook(const LawParameters &p, const Batch &b) :
+        d1(p.value[D1]), d2(p.value[D2]), d3(p.value[D3]), d4(p.value[D4]),
+        inv_rate(1.0 / max(p.value[RATE] * b.dt, 1e-300)), d5(p.value[D5]), Tref(p.value[REF]),
+        inv_range(1.0 / (p.value[MELT] - p.value[REF])), efmin(max(p.value[EFMIN], 1e-300)),
+        temperature(d5 != 0.0 ? MPM_NS::temperature(p, b) : b.plastic), ductile(p, b, SOFTEN)
+    {
+    }
+
+    MPM_INLINE double grow(const Batch &b, History history, int i, const Intact &intact) const
+    {
+      const double de = b.plastic[i];
+      const double triaxiality = min(intact.mean / max(equivalent(intact.s), 1e-300), 1.5);
+      const double fast = 1.0 + d4 * log(max(de * inv_rate, 1.0));
+      const double T = min(max((temperature[i] - Tref) * inv_range, 0.0), 1.0);
+      const double limit = (d1 + d2 * exp(min(d3 * triaxiality, 300.0))) * fast * (1.0 + d5 * T);
+      return ductile.use(b, history, i, de / max(limit, efmin));
+    }
+  };
+
+  /** Ductile failure by the work of the largest principal stress (M.G. Cockcroft, D.J. Latham,
+   *  J. Inst. Met. 96 (1968) 33):
+   *
+   *    used = (1/WC) sum max(sigma_1, 0) de,   e: equivalent plastic strain */
+  struct DamageCockcroftLatham : ScalarDamage<DamageCockcroftLatham> {
+    static constexpr const char *name = "cockcroft/latham";
+    static constexpr const char *meaning = "plastic work of the largest principal stress";
+    enum { WC, SOFTEN, ENERGY, AFTER };
+    static constexpr Parameter parameters[] = {
+        {"", "WC", "pressure", POSITIVE, REQUIRED, "critical work per volume"},
+        soften_from,
+        soften_energy,
+        MPM_AFTER_PARAMETERS};
+    static constexpr HistoryDeclaration history[] = {MPM_DAMAGE_HISTORY, ductility_used};
+
+    double inv_work;
+    Ductile ductile;
+
+    DamageCockcroftLatham(const LawParameters &p, const Batch &b) :
+        inv_work(1.0 / p.value[WC]), ductile(p, b, SOFTEN)
+    {
+    }
+
+    MPM_INLINE double grow(const Batch &b, History history, int i, const Intact &intact) const
+    {
+      return ductile.use(b, history, i, inv_work * max(principal(intact), 0.0) * b.plastic[i]);
+    }
+  };
 
 }    // namespace
 }    // namespace MPM_NS::law

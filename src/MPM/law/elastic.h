@@ -241,11 +241,9 @@ namespace {
 
     using LameModuli::LameModuli;
 
-    /** Engineering strains u of the points of a batch. */
     static void engineering_strains(const Batch &b, Tensors &strain)
     {
-      left_strains(b, strain);
-      log_strains(b.n, strain.row, strain.row);
+      logarithmic_strains(b, strain);
       exp_minus_identity(b.n, strain.row, strain.row);
     }
 
@@ -304,8 +302,7 @@ namespace {
     {
       const LawHencky law(p);
       Tensors strain;
-      left_strains(b, strain);
-      log_strains(b.n, strain.row, strain.row);
+      logarithmic_strains(b, strain);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Sym e = load_rows(strain.row, i);
@@ -318,8 +315,7 @@ namespace {
     {
       const LawHencky law(p);
       Tensors strain;
-      left_strains(b, strain);
-      log_strains(b.n, strain.row, strain.row);
+      logarithmic_strains(b, strain);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const double logJ = log_volume(displacement(b, i));

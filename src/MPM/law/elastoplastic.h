@@ -12,7 +12,7 @@
 // Finite-strain elastoplasticity with return mapping in principal logarithmic strains: the common
 // part of the laws of soil, rock and snow.
 
-#include "law/tensor_function.h"
+#include "law/spectral.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -255,7 +255,6 @@ namespace {
     return volume + closed;
   }
 
-  /** One degree in radians. */
   constexpr double DEGREES = 0.017453292519943295769;
 
 }    // namespace

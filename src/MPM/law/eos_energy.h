@@ -21,10 +21,8 @@ namespace {
   {
     return {"energy", initial, "pressure", "internal energy per reference volume"};
   }
-  /** Declaration of the dissipated part of the internal energy. */
   constexpr HistoryDeclaration dissipated = {"heat", ZERO, "pressure",
                                              "part of it that was dissipated"};
-  /** Base of the equations of state with an internal energy. */
   struct InternalEnergy : LawDefaults {
     static constexpr bool uses_F = false, expands = true;
     enum { ENERGY, HEATED };
@@ -70,7 +68,6 @@ namespace {
         gamma(gamma), dJ(dJ), pold(pold), limited(max(1.0 + 0.5 * gamma * dJ, 0.1))
     {
     }
-    /** E at the end of the step. */
     MPM_INLINE double energy(double cold, double Eold, double heat) const
     {
       return (Eold - 0.5 * (pold + cold) * dJ + heat) / limited;
@@ -81,7 +78,6 @@ namespace {
     {
       return gamma / limited * 0.5 * (slope * dJ - pold - p) - slope;
     }
-    /** Derivative of p with respect to the heat of the step. */
     MPM_INLINE double by_heat() const { return gamma / limited; }
   };
 
@@ -331,7 +327,6 @@ namespace {
     /** Energy per reference volume of the reference state at this pressure. */
     double energy_at(double pressure) const { return (pressure + pinf) / g + pinf; }
 
-    /** Pressure at a volume ratio and an internal energy. */
     MPM_INLINE double pressure(double J, double E) const
     {
       return max(g * (E - pinf * J) / J - pinf, pmin);

@@ -194,7 +194,6 @@ namespace {
     {
     }
 
-    /** Hardening factor h. */
     MPM_INLINE double hardening(double JP) const { return exp(xi * (1.0 - JP)); }
 
     /** Energy for h = 1. s0, s1, s2, dJ: stretches minus one and their product minus one. */

@@ -97,7 +97,6 @@ namespace {
       const double f = (T - melt) / over;
       return f < 0.0 ? 0.0 : (f > 1.0 ? 1.0 : f);
     }
-    /** Enthalpy at a temperature and a molten fraction. */
     MPM_INLINE double enthalpy(double T, double molten) const
     {
       const double *const k = below(T), d = T - k[TEMPERATURE];

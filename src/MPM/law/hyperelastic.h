@@ -9,8 +9,8 @@
 #ifndef MPM_LAW_HYPERELASTIC_H
 #define MPM_LAW_HYPERELASTIC_H
 
+#include "law/spectral.h"
 #include "law/tangent.h"
-#include "law/tensor_function.h"
 
 namespace MPM_NS::law {
 namespace {
@@ -20,6 +20,13 @@ namespace {
   {
     MPM_SIMD
     for (int i = 0; i < b.n; i++) store_rows(strain.row, i, left_strain(displacement(b, i)));
+  }
+
+  /** Logarithmic strains ln(b)/2 of the points of a batch. */
+  MPM_INLINE void logarithmic_strains(const Batch &b, Tensors &strain)
+  {
+    left_strains(b, strain);
+    log_strains(b.n, strain.row, strain.row);
   }
 
   /** Kernels of a law whose stress is a function of F. Law provides:
@@ -93,8 +100,8 @@ namespace {
    *
    *  (G.A. Holzapfel, Nonlinear Solid Mechanics, 2000, ch. 6.6; E.A. de Souza Neto et al.,
    *  Computational Methods for Plasticity, 2008, app. A). The remainder is a rotation of the
-   *  stress. m_ab is even in e_a
-   *  - e_b: where this difference is small, the error of the limit is of second order. */
+   *  stress. m_ab is an even function of e_a - e_b: where this difference is small, the error of
+   *  the limit is of second order. */
   MPM_INLINE double shear_tangent(const PrincipalResponse &r, int i, int a, int b, int ab)
   {
     const double d = r.e[a][i] - r.e[b][i];

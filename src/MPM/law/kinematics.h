@@ -32,7 +32,6 @@ namespace {
     return {s * a.xx, s * a.yy, s * a.zz, s * a.xy, s * a.xz, s * a.yz};
   }
 
-  /** Sum of the diagonal components. */
   MPM_INLINE double trace(const Sym &a)
   {
     return a.xx + a.yy + a.zz;
@@ -76,7 +75,6 @@ namespace {
     return (a.xx * a.yy - a.xy * a.xy) + (a.xx * a.zz - a.xz * a.xz) + (a.yy * a.zz - a.yz * a.yz);
   }
 
-  /** Third invariant. */
   MPM_INLINE double determinant(const Sym &a)
   {
     return a.xx * (a.yy * a.zz - a.yz * a.yz) - a.xy * (a.xy * a.zz - a.yz * a.xz) +
@@ -100,13 +98,11 @@ namespace {
     rows[5][i] = s.yz;
   }
 
-  /** Cauchy stress of point i. */
   MPM_INLINE Sym load_stress(const Batch &b, int i)
   {
     return load_rows(b.stress, i);
   }
 
-  /** Sets the Cauchy stress of point i. */
   MPM_INLINE void store_stress(Batch &b, int i, const Sym &s)
   {
     store_rows(b.stress, i, s);
@@ -175,7 +171,6 @@ namespace {
   struct Displacement {
     double xx, xy, xz, yx, yy, yz, zx, zy, zz;
 
-    /** Sum of the principal minors. */
     MPM_INLINE double minors() const
     {
       return (xx * yy - xy * yx) + (xx * zz - xz * zx) + (yy * zz - yz * zy);
@@ -193,7 +188,6 @@ namespace {
             b.F[5][i],       b.F[6][i], b.F[7][i], b.F[8][i] - 1.0};
   }
 
-  /** Displacement gradient A of this step. */
   MPM_INLINE Displacement step_displacement(const Batch &b, int i)
   {
     return {b.A[0][i], b.A[1][i], b.A[2][i], b.A[3][i], b.A[4][i],
@@ -211,7 +205,6 @@ namespace {
             H.yz + H.zy + H.yx * H.zx + H.yy * H.zy + H.yz * H.zz};
   }
 
-  /** Green-Lagrange strain (F^T F - I)/2. */
   MPM_INLINE Sym green_lagrange(const Displacement &H)
   {
     return 0.5 * left_strain({H.xx, H.yx, H.zx, H.xy, H.yy, H.zy, H.xz, H.yz, H.zz});
@@ -278,7 +271,6 @@ namespace {
     return rotate(inc, old + half) + half;
   }
 
-  /** Left Cauchy-Green tensor F F^T. */
   MPM_INLINE Sym left_cauchy_green(const Batch &b, int i)
   {
     const double xx = b.F[0][i], xy = b.F[1][i], xz = b.F[2][i];
@@ -288,7 +280,6 @@ namespace {
             xx * yx + xy * yy + xz * yz, xx * zx + xy * zy + xz * zz, yx * zx + yy * zy + yz * zz};
   }
 
-  /** The product a a. */
   MPM_INLINE Sym square(const Sym &a)
   {
     return {a.xx * a.xx + a.xy * a.xy + a.xz * a.xz, a.xy * a.xy + a.yy * a.yy + a.yz * a.yz,
@@ -304,7 +295,6 @@ namespace {
   struct DeviatorRoots {
     double first, half;
 
-    /** d: a deviator. */
     MPM_INLINE explicit DeviatorRoots(const Sym &d)
     {
       const double r = std::sqrt((1.0 / 6.0) * norm2(d)), r3 = r * r * r;
@@ -318,14 +308,12 @@ namespace {
     }
   };
 
-  /** Largest eigenvalue of a deviator. */
   MPM_INLINE double largest_eigenvalue(const Sym &d)
   {
     const DeviatorRoots root(d);
     return root.first < 0.0 ? root.half - 0.5 * root.first : root.first;
   }
 
-  /** Largest eigenvalue of any symmetric tensor. */
   MPM_INLINE double largest_principal(const Sym &a)
   {
     return (1.0 / 3.0) * trace(a) + largest_eigenvalue(deviator(a));

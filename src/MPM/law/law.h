@@ -62,7 +62,6 @@ struct Parameter {
   bool of_new_points = false;
 };
 
-/** Declarations that several laws share. */
 constexpr Parameter YOUNGS_MODULUS = {"", "E", "pressure", POSITIVE, REQUIRED, "Young's modulus"};
 constexpr Parameter POISSONS_RATIO = {"", "NU", "1", POISSON_RATIO, REQUIRED, "Poisson's ratio"};
 constexpr Parameter SHEAR_MODULUS = {"", "G", "pressure", POSITIVE, REQUIRED, "shear modulus"};
@@ -229,18 +228,15 @@ struct LawDefaults {
                         finds_temperature = false, of_surfaces = false;
   static constexpr int gruneisen = -1;
   static constexpr const char *term = nullptr;
-  static constexpr std::nullptr_t term_parameters = nullptr;
-  static constexpr std::nullptr_t history = nullptr;
-  static constexpr std::nullptr_t term_history = nullptr;
-  static constexpr std::nullptr_t nhistory = nullptr;
+  static constexpr std::nullptr_t term_parameters = nullptr, history = nullptr,
+                                  term_history = nullptr, nhistory = nullptr;
   static constexpr const char *check(const LawParameters &) { return nullptr; }
   static constexpr bool needs_temperature(const LawParameters &) { return false; }
-  static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr, conduction = nullptr;
-  static constexpr std::nullptr_t fracture_share = nullptr, expansion = nullptr;
-  static constexpr std::nullptr_t consistent = nullptr;
-  static constexpr std::nullptr_t initialize = nullptr;
-  static constexpr std::nullptr_t modulus = nullptr, energy = nullptr;
-  static constexpr std::nullptr_t raise_speed = nullptr, prepare = nullptr, tangent = nullptr;
+  static constexpr std::nullptr_t heat_share = nullptr, warming = nullptr, conduction = nullptr,
+                                  fracture_share = nullptr, expansion = nullptr,
+                                  consistent = nullptr, initialize = nullptr;
+  static constexpr std::nullptr_t modulus = nullptr, energy = nullptr, raise_speed = nullptr,
+                                  prepare = nullptr, tangent = nullptr;
 };
 
 /** Kernels of all laws for one instruction set. */

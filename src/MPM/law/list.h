@@ -90,14 +90,12 @@ MPM_FAMILY(impact, STRENGTH, StrengthJohnsonCook, StrengthSteinberg, StrengthZer
 
 #if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_viscosity)
 #include "law/viscosity.h"
-#include "law/viscosity_generalized.h"
 MPM_FAMILY(viscosity, VISCOSITY, ViscosityNewtonian, ViscosityArtificial, ViscosityBingham,
            ViscosityHerschelBulkley, ViscosityPower)
 #endif
 
 #if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_damage)
-#include "law/damage_brittle.h"
-#include "law/damage_ductile.h"
+#include "law/damage.h"
 MPM_FAMILY(damage, DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp)
 #endif
 

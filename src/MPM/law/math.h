@@ -21,7 +21,6 @@
 namespace MPM_NS::law {
 namespace {
 
-  /** Bit pattern of a double. */
   MPM_INLINE uint64_t to_bits(double x)
   {
     uint64_t u;
@@ -29,7 +28,6 @@ namespace {
     return u;
   }
 
-  /** Double with this bit pattern. */
   MPM_INLINE double from_bits(uint64_t u)
   {
     double x;
@@ -43,7 +41,6 @@ namespace {
     return a > b ? a : b;
   }
 
-  /** Smaller of two numbers; b if either is not a number. */
   MPM_INLINE double min(double a, double b)
   {
     return a < b ? a : b;
@@ -62,7 +59,6 @@ namespace {
     double k, f, s, tail;
   };
 
-  /** Parts of the logarithm of a normal positive number. */
   MPM_INLINE LogParts log_parts(double x)
   {
     constexpr uint64_t SQRT_HALF = 0x3fe6a09e667f3bcd;
@@ -109,7 +105,6 @@ namespace {
     double scale, rest, tail;
   };
 
-  /** Parts of the exponential. */
   MPM_INLINE ExpParts exp_parts(double x)
   {
     constexpr double ROUND = 6755399441055744.0;    // 1.5 * 2^52: adding it rounds to an integer

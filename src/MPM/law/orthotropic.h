@@ -29,6 +29,11 @@ namespace {
     }
   };
 
+  /** Axes of a material, [axis][component]. */
+  struct MaterialAxes {
+    double axis[3][3];
+  };
+
   /** Anisotropic solid whose second Piola-Kirchhoff stress is linear in the Green-Lagrange strain
    *  (St. Venant-Kirchhoff):
    *
@@ -40,8 +45,8 @@ namespace {
     double C11, C22, C33, C12, C13, C23, G12, G13, G23;
     double to_axes[9], from_axes[9];    ///< row-major rotations of tensors into the axes and back
 
-    /** axis: three orthonormal vectors, [axis][component]. */
-    AnisotropicKirchhoff(const Orthotropic &c, const double axis[3][3]) :
+    /** axes: orthonormal. */
+    AnisotropicKirchhoff(const Orthotropic &c, const MaterialAxes &axes) :
         G12(c.G12), G13(c.G13), G23(c.G23)
     {
       // inverse of the compliance
@@ -56,7 +61,7 @@ namespace {
       C13 = (s12 * s23 - s13 * s22) / det;
       C23 = (s12 * s13 - s23 * s11) / det;
       for (int a = 0; a < 3; a++)
-        for (int k = 0; k < 3; k++) from_axes[3 * k + a] = to_axes[3 * a + k] = axis[a][k];
+        for (int k = 0; k < 3; k++) from_axes[3 * k + a] = to_axes[3 * a + k] = axes.axis[a][k];
     }
 
     /** Second Piola-Kirchhoff stress in the axes of the material. */
@@ -141,8 +146,30 @@ namespace {
     }
   };
 
+  /** Kernels of an anisotropic solid. Law provides:
+   *    constants(parameters), its elastic constants
+   *    axes(parameters), its axes
+   */
+  template <class Law> struct AnisotropicSolid : Hyperelastic<Law>, AnisotropicKirchhoff {
+    explicit AnisotropicSolid(const LawParameters &p) :
+        AnisotropicKirchhoff(Law::constants(p), Law::axes(p))
+    {
+    }
+
+    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
+    {
+      bound(Law(p), b, k);
+    }
+
+    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
+    {
+      Law::update(p, b, history);
+      add_tangent(Law(p), b, t);
+    }
+  };
+
   /** Orthotropic law with nine engineering constants. */
-  struct LawOrthotropic : Hyperelastic<LawOrthotropic>, AnisotropicKirchhoff {
+  struct LawOrthotropic : AnisotropicSolid<LawOrthotropic> {
     static constexpr const char *name = "orthotropic";
     static constexpr const char *meaning = "orthotropic elastic, linear in Green-Lagrange strain";
     static constexpr Parameter parameters[] = {
@@ -155,25 +182,17 @@ namespace {
         {"", "G12", "pressure", POSITIVE, REQUIRED, "shear modulus in the plane 12"},
         {"", "G13", "pressure", POSITIVE, REQUIRED, "shear modulus in the plane 13"},
         {"", "G23", "pressure", POSITIVE, REQUIRED, "shear modulus in the plane 23"},
-        {"axes", "A1X", "1", ANY_NUMBER, 1.0, "axis 1, of any length"},
-        {"axes", "A1Y", "1", ANY_NUMBER, 0.0, "axis 1"},
-        {"axes", "A1Z", "1", ANY_NUMBER, 0.0, "axis 1"},
-        {"axes", "A2X", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
-        {"axes", "A2Y", "1", ANY_NUMBER, 1.0, "vector in the plane 12"},
-        {"axes", "A2Z", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
-        {"angle", "THETA", "degrees", ANY_NUMBER, 0.0, "then turns axes 1 and 2 about axis 3"}};
+        MPM_AXES_PARAMETERS};
 
-    /** Axes of the material from the options axes and angle. */
-    struct Axes {
-      double axis[3][3];
+    using AnisotropicSolid::AnisotropicSolid;
 
-      explicit Axes(const LawParameters &p)
-      {
-        orthonormal_axes(p.value + 9, p.value + 12, p.value[15], axis);
-      }
-    };
+    static MaterialAxes axes(const LawParameters &p)
+    {
+      MaterialAxes axes;
+      orthonormal_axes(p.value + 9, p.value + 12, p.value[15], axes.axis);
+      return axes;
+    }
 
-    /** Elastic constants from the parameters. */
     static Orthotropic constants(const LawParameters &p)
     {
       const double *const v = p.value;
@@ -187,27 +206,11 @@ namespace {
         return "the energy is not positive for all strains: check E1, E2, E3 and NU12, NU13, NU23";
       return nullptr;
     }
-
-    explicit LawOrthotropic(const LawParameters &p) :
-        AnisotropicKirchhoff(constants(p), Axes(p).axis)
-    {
-    }
-
-    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
-    {
-      bound(LawOrthotropic(p), b, k);
-    }
-
-    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
-    {
-      update(p, b, history);
-      add_tangent(LawOrthotropic(p), b, t);
-    }
   };
 
   /** Law with the five constants of a material that has an axis of symmetry, such as the direction
    *  of fibers. */
-  struct LawTransverselyIsotropic : Hyperelastic<LawTransverselyIsotropic>, AnisotropicKirchhoff {
+  struct LawTransverselyIsotropic : AnisotropicSolid<LawTransverselyIsotropic> {
     static constexpr const char *name = "transversely/isotropic";
     static constexpr const char *meaning = "elastic with one axis, linear in Green-Lagrange strain";
     enum { EA, ET, NUA, NUT, GA, AXIS };
@@ -221,29 +224,29 @@ namespace {
         {"axis", "AY", "1", ANY_NUMBER, 0.0, "axis"},
         {"axis", "AZ", "1", ANY_NUMBER, 0.0, "axis"}};
 
-    /** Axes of the material: axis 1 is the axis of symmetry. */
-    struct Axes {
-      double axis[3][3];
+    using AnisotropicSolid::AnisotropicSolid;
 
-      explicit Axes(const LawParameters &p)
-      {
-        const double *const a = p.value + AXIS;
-        const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-        for (int k = 0; k < 3; k++) axis[0][k] = a[k] / length;
-        // two further axes, from the coordinate axis that is most nearly normal to the first
-        int far = 0;
-        for (int k = 1; k < 3; k++)
-          if (std::fabs(axis[0][k]) < std::fabs(axis[0][far])) far = k;
-        const double along = axis[0][far], rest = std::sqrt(1.0 - along * along);
-        for (int k = 0; k < 3; k++) axis[1][k] = ((k == far) - along * axis[0][k]) / rest;
-        for (int k = 0; k < 3; k++) {
-          const int m = (k + 1) % 3, n = (k + 2) % 3;
-          axis[2][k] = axis[0][m] * axis[1][n] - axis[0][n] * axis[1][m];
-        }
+    /** Axis 1 is the axis of symmetry; two further ones, from the coordinate axis that is most
+     *  nearly normal to it. */
+    static MaterialAxes axes(const LawParameters &p)
+    {
+      MaterialAxes axes;
+      auto &axis = axes.axis;
+      const double *const a = p.value + AXIS;
+      const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+      for (int k = 0; k < 3; k++) axis[0][k] = a[k] / length;
+      int far = 0;
+      for (int k = 1; k < 3; k++)
+        if (std::fabs(axis[0][k]) < std::fabs(axis[0][far])) far = k;
+      const double along = axis[0][far], rest = std::sqrt(1.0 - along * along);
+      for (int k = 0; k < 3; k++) axis[1][k] = ((k == far) - along * axis[0][k]) / rest;
+      for (int k = 0; k < 3; k++) {
+        const int m = (k + 1) % 3, n = (k + 2) % 3;
+        axis[2][k] = axis[0][m] * axis[1][n] - axis[0][n] * axis[1][m];
       }
-    };
+      return axes;
+    }
 
-    /** Elastic constants from the parameters. */
     static Orthotropic constants(const LawParameters &p)
     {
       const double *const v = p.value;
@@ -258,22 +261,6 @@ namespace {
       if (!constants(p).admissible())
         return "the energy is not positive for all strains: 1 - NUT must be above 2 NUA^2 ET/EA";
       return nullptr;
-    }
-
-    explicit LawTransverselyIsotropic(const LawParameters &p) :
-        AnisotropicKirchhoff(constants(p), Axes(p).axis)
-    {
-    }
-
-    static void modulus(const LawParameters &p, const Batch &b, History, double *k)
-    {
-      bound(LawTransverselyIsotropic(p), b, k);
-    }
-
-    static void tangent(const LawParameters &p, Batch &b, History history, Tangent &t)
-    {
-      update(p, b, history);
-      add_tangent(LawTransverselyIsotropic(p), b, t);
     }
   };
 

@@ -83,9 +83,9 @@ namespace {
   };
 
   /** Flow stress y at the end of a step as a function of its plastic strain increment D, its first
-   *  two derivatives, and room, the distance of D from the next kink of the function. */
+   *  two derivatives, and to_kink, the distance of D from the next kink of the function. */
   struct FlowStress {
-    double y, dy, ddy, room;
+    double y, dy, ddy, to_kink;
   };
 
   /** Second-order expansion of c x^n about an x0 > 0 that is the same for all D: c x0^n (1 + n z +
@@ -147,7 +147,7 @@ namespace {
           const double step = third_order_step(t, safe, f), size = max(step, -step);
           // upper bound of the remaining error, since |ddy/D| bounds the third derivative
           const double rest = max(f.ddy, -f.ddy) * size * size * size;
-          const double off = max(rest - 1e-14 * f.y * safe, size - min(f.room, 0.1 * safe));
+          const double off = max(rest - 1e-14 * f.y * safe, size - min(f.to_kink, 0.1 * safe));
           const double here = off <= 0.0 ? 0.0 : on;    // not a number: stays open
           yield[i] = on > 0.0 ? min(f.y + step * (f.dy + 0.5 * step * f.ddy), t.q) : yield[i];
           D[i] = on > 0.0 ? d + step : d;
@@ -209,7 +209,7 @@ namespace {
         yield[i] = on > 0.0 ? min(f.y + f.dy * step, t.q) : yield[i];
         D[i] = on > 0.0 ? d + step : d;
         // a small Newton step leaves an error of its square, so that no further iteration is needed
-        const double size = max(step, -step) < f.room ? 1e-14 * d * d : 0.0;
+        const double size = max(step, -step) < f.to_kink ? 1e-14 * d * d : 0.0;
         open[i] = step * step > size ? on : 0.0;
         busy += open[i];
       }
@@ -229,11 +229,12 @@ namespace {
    *    start(history, i), the flow stress for D -> 0
    *    stress(history, i, start, trial state, D), which returns Y(D)
    *    begin(start, D), the flow stress at the beginning of the step; the plastic work is the mean
-   *    of this and Y, times D estimates; if true, also estimate(i, start, trial state, D), which
-   *    returns about the same as stress() with fewer elementary functions, from values that start()
-   *    has stored goes_on; selects the argument start, the stress at which plastic flow begins in
-   *    this step: false: the result of start(); true: the equivalent stress of the last step,
-   *    unless it was far below
+   *      of this and Y, times D
+   *    estimates; if true, also estimate(i, start, trial state, D), which returns about the same as
+   *      stress() with fewer elementary functions, from values that start() has stored
+   *    goes_on; selects the argument start, the stress at which plastic flow begins in this step.
+   *      false: the result of start(); true: the equivalent stress of the last step, unless it was
+   *      far below
    *
    *  First row of the history: the equivalent plastic strain. */
   template <class Flow> struct RadialReturn : ShearElasticity {
@@ -329,7 +330,7 @@ namespace {
       const double inv = 1.0 / q, fade = mixed[i] + faded * square[i], dq = gamma * w * fade * inv;
       const double ddq = inv * (gamma * gamma * w * (w * square[i] - fade) - dq * dq);
       return {f.y + slope[i] * g + (trial[i] - q), f.dy + slope[i] * w - dq,
-              f.ddy - gamma * slope[i] * w - ddq, f.room};
+              f.ddy - gamma * slope[i] * w - ddq, f.to_kink};
     }
   };
 

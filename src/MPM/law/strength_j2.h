@@ -27,8 +27,8 @@ namespace {
   constexpr int LONG_TABLE = LawParameters::MAX_TERMS;
 
   /** Straight lines between the points of a table, from SIGMAY at e = 0; constant after the last
-   *  point. SIZE: room for points; only inner loops of fixed length allow the outer loop to
-   *  vectorize. */
+   *  point. SIZE: largest number of points; only inner loops of fixed length allow the outer loop
+   *  to vectorize. */
   template <int SIZE> struct J2Hardening {
     double sigmay;
     double from[SIZE], length[SIZE], slopes[SIZE];
@@ -49,15 +49,15 @@ namespace {
     MPM_INLINE double start(int, double e) { return (*this)(e).y; }
     MPM_INLINE FlowStress operator()(double e) const
     {
-      double y = sigmay, dy = 0.0, room = UNBOUNDED;
+      double y = sigmay, dy = 0.0, to_kink = UNBOUNDED;
 #pragma GCC unroll 32
       for (int k = 0; k < SIZE; k++) {
         const double x = e - from[k], left = length[k] - x;
         y += slopes[k] * min(max(x, 0.0), length[k]);
         dy = x >= 0.0 && left > 0.0 ? slopes[k] : dy;
-        room = min(room, min(max(x, -x), max(left, -left)));
+        to_kink = min(to_kink, min(max(x, -x), max(left, -left)));
       }
-      return {y, dy, 0.0, room};
+      return {y, dy, 0.0, to_kink};
     }
   };
 
@@ -171,7 +171,8 @@ namespace {
       const double inv = 1.0 / max(D, 1e-300), dx = exponent * inv * x,
                    resist = f.y * factor + drag;
       return {f.y * fast + drag * x, f.dy * fast + resist * dx,
-              f.ddy * fast + (2.0 * f.dy * factor + resist * (exponent - 1.0) * inv) * dx, f.room};
+              f.ddy * fast + (2.0 * f.dy * factor + resist * (exponent - 1.0) * inv) * dx,
+              f.to_kink};
     }
     MPM_INLINE double begin(double start, double) const { return start; }
   };

@@ -71,9 +71,9 @@ namespace {
       const double y = hard * fast, dy = dhard * fast + hard * dfast;
       // d2 fast/dD2 = -dfast/D
       const double ddy = (N - 1.0) * dhard * inv_e * fast + dfast * (2.0 * dhard - hard / D);
-      const double room = max(over, -over);
+      const double to_kink = max(over, -over);
       if constexpr (!THERMAL) {
-        return {y, dy, ddy, room};
+        return {y, dy, ddy, to_kink};
       } else {
         const double sigma = trial.q - trial.stiff * D;    // is Y at the solution
         const double half = 0.5 * trial.J * warm;
@@ -87,7 +87,7 @@ namespace {
         const double ddcold = (M - 1.0) * dcold * dt + changes * inv_t * inv_range * ddT;
         const double u = (T - Tref) * inv_range, v = 1.0 - u, speed = inv_range * max(dT, -dT);
         return {y * cold, dy * cold + y * dcold, ddy * cold + 2.0 * dy * dcold + y * ddcold,
-                min(room, min(max(u, -u), max(v, -v)) / max(soft * speed, 1e-300))};
+                min(to_kink, min(max(u, -u), max(v, -v)) / max(soft * speed, 1e-300))};
       }
     }
 

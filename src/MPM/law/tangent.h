@@ -135,9 +135,8 @@ namespace {
     }
   };
 
-  /** Motion of a step in rate form, and its derivatives. The increment at the middle of the step, G
-   *  = A (I
-   *  + A/2)^-1, with strain e and rotation W, has the derivative
+  /** Motion of a step in rate form, and its derivatives. The increment at the middle of the step,
+   *  G = A (I + A/2)^-1, with strain e and rotation W, has the derivative
    *
    *    dG = (I - G/2) l (I + G/2).
    *
@@ -181,7 +180,6 @@ namespace {
         }
     }
 
-    /** Strain e of the step. */
     MPM_INLINE Sym strain(int i) const
     {
       return {G[0][i],
@@ -232,7 +230,6 @@ namespace {
       }
     };
 
-    /** Derivatives with respect to l_kl. */
     MPM_INLINE Columns columns(int k, int l) const
     {
       return {*this,
@@ -265,7 +262,6 @@ namespace {
       }
     }
 
-    /** Deviator at the end of the step. */
     MPM_INLINE Sym trial(int i) const { return load_rows(turned, i) + shear * deviator(strain(i)); }
 
     /** Derivatives of trial() with respect to l_kl. */

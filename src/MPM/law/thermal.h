@@ -175,13 +175,7 @@ namespace {
          "conductivity along axis 2, with K along axis 1"},
         {"orthotropic", "K3", "energy/(time length temperature)", POSITIVE, 0.0,
          "conductivity along axis 3"},
-        {"axes", "A1X", "1", ANY_NUMBER, 1.0, "axis 1, of any length"},
-        {"axes", "A1Y", "1", ANY_NUMBER, 0.0, "axis 1"},
-        {"axes", "A1Z", "1", ANY_NUMBER, 0.0, "axis 1"},
-        {"axes", "A2X", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
-        {"axes", "A2Y", "1", ANY_NUMBER, 1.0, "vector in the plane 12"},
-        {"axes", "A2Z", "1", ANY_NUMBER, 0.0, "vector in the plane 12"},
-        {"angle", "THETA", "degrees", ANY_NUMBER, 0.0, "then turns axes 1 and 2 about axis 3"}};
+        MPM_AXES_PARAMETERS};
     static const char *check(const LawParameters &p)
     {
       const double *const v = p.value, *const a = v + A1, *const b = a + 3;

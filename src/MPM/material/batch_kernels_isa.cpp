@@ -23,16 +23,6 @@ namespace {
 
 using Column = double[BATCH];
 
-MPM_INLINE void transpose(Vec<4> r[4])
-{
-  const Vec<4> a = shuffle<0, 4, 2, 6>(r[0], r[1]), b = shuffle<1, 5, 3, 7>(r[0], r[1]);
-  const Vec<4> c = shuffle<0, 4, 2, 6>(r[2], r[3]), d = shuffle<1, 5, 3, 7>(r[2], r[3]);
-  r[0] = shuffle<0, 1, 4, 5>(a, c);
-  r[1] = shuffle<0, 1, 4, 5>(b, d);
-  r[2] = shuffle<2, 3, 6, 7>(a, c);
-  r[3] = shuffle<2, 3, 6, 7>(b, d);
-}
-
 /** The first COLUMNS columns of the points p..p+3 from rows of WIDTH reals, times scale. */
 template <int WIDTH, int COLUMNS = WIDTH>
 MPM_INLINE void rows_to_columns(const double *row, Column *column, int p, double scale)
@@ -402,6 +392,12 @@ void jacobians(const Column *F, int n, double *J)
         F[2][p] * (F[3][p] * F[7][p] - F[4][p] * F[6][p]);
 }
 
+template <int DIM, bool HOOP>
+const BatchKernels kernels = {load<DIM, false, HOOP>, load<DIM, true, HOOP>, forget_shape<DIM>,
+                              first_piola<DIM>,       add_kirchhoff,         stress_work,
+                              load_history,           store_history,         jacobians,
+                              store<DIM, HOOP>};
+
 }    // namespace
 
 namespace MPM_NS {
@@ -410,17 +406,5 @@ const BatchKernels *MPM_OF_ISA(mpm_batch)(int dim, bool hoop);
 
 const BatchKernels *MPM_NS::MPM_OF_ISA(mpm_batch)(int dim, bool hoop)
 {
-  static const BatchKernels solid = {load<3, false, false>, load<3, true, false>, forget_shape<3>,
-                                     first_piola<3>,        add_kirchhoff,        stress_work,
-                                     load_history,          store_history,        jacobians,
-                                     store<3, false>},
-                            plane = {load<2, false, false>, load<2, true, false>, forget_shape<2>,
-                                     first_piola<2>,        add_kirchhoff,        stress_work,
-                                     load_history,          store_history,        jacobians,
-                                     store<2, false>},
-                            axial = {load<2, false, true>, load<2, true, true>, forget_shape<2>,
-                                     first_piola<2>,       add_kirchhoff,       stress_work,
-                                     load_history,         store_history,       jacobians,
-                                     store<2, true>};
-  return dim == 3 ? &solid : hoop ? &axial : &plane;
+  return dim == 3 ? &kernels<3, false> : hoop ? &kernels<2, true> : &kernels<2, false>;
 }

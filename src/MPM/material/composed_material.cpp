@@ -11,8 +11,6 @@
 #include "material/composed_material.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 
 using namespace MPM_NS;
 
@@ -101,7 +99,7 @@ void ComposedMaterial::add(const UsedRange &range)
   text += ", range " + range.quantity + " " + number(range.low) + " " + number(range.high);
 }
 
-/* ---------------------------------------------------------------------- what parts take from each other */
+// what parts take from each other
 
 void ComposedMaterial::bind(double pressure_scale, double energy_scale)
 {
@@ -156,8 +154,6 @@ bool ComposedMaterial::random_heats() const
   return false;
 }
 
-/* ---------------------------------------------------------------------- */
-
 bool ComposedMaterial::is_viscous() const
 {
   return std::any_of(laws.begin(), laws.end(), [](const auto &law) {
@@ -201,8 +197,6 @@ int ComposedMaterial::outside(const Batch &b, int k, double *value) const
     return x < range.low || x > range.high;
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::unique_ptr<Material> MPM_NS::compose(const MaterialDefinition &definition,
                                           const LawTable *table)

@@ -10,14 +10,68 @@
 #define MPM_MATERIAL_COMPOSED_MATERIAL_H
 
 #include "law/heat_curve.h"
-#include "material/elastic_motion.h"
 #include "material/parts.h"
 
 #include <cstring>
 #include <functional>
 #include <iterator>
+#include <optional>
 
 namespace MPM_NS {
+
+/** Thermal expansion of the points of a batch, given by the stretch theta = exp[ALPHA (T - T0)]. */
+struct ThermalStretch {
+  double before[BATCH], now[BATCH];    ///< 1/theta at the start and the end of a step
+  double change[BATCH];                ///< change of ln theta in the step
+
+  /** theta^3 at the end of the step. */
+  double volume(int i) const { return 1.0 / (now[i] * now[i] * now[i]); }
+};
+
+/** Rows of a batch that get their values of now back, bit for bit, when this object ends. */
+template <class Rows> struct Restored {
+  Rows &rows, was;
+
+  explicit Restored(Rows &rows) : rows(rows) { memcpy(was, rows, sizeof(Rows)); }
+  ~Restored() { memcpy(rows, was, sizeof(Rows)); }
+  Restored(const Restored &) = delete;
+  Restored &operator=(const Restored &) = delete;
+};
+
+/** Removes the thermal stretch from the motion of a batch while this object exists. The laws then
+ *  see F_e = F/theta, J_e = J/theta^3, the increment A_e of the same step with I + A_e = (I + A)
+ *  theta_old/theta, and, as initial volume, the stress-free volume V_0 theta^3 of a point (V.A.
+ *  Lubarda, Appl. Mech. Rev. 57 (2004) 95: F = F_e F_theta, with a stress that is a function of
+ *  F_e). Their energies are then per volume of the expanded material.
+ */
+class ElasticMotion {
+ public:
+  /** with_F: a law uses F, so that F is changed, too. */
+  ElasticMotion(Batch &b, const ThermalStretch &s, bool with_F) :
+      A(b.A), J(b.J), Jold(b.Jold), vol0(b.vol0)
+  {
+    if (with_F) F.emplace(b.F);
+    double ratio[BATCH];
+    for (int i = 0; i < b.n; i++) {
+      const double now = s.now[i], before = s.before[i];
+      ratio[i] = now / before;
+      b.J[i] = now * now * now * J.was[i];
+      b.Jold[i] = before * before * before * Jold.was[i];
+      b.vol0[i] = s.volume(i) * vol0.was[i];
+    }
+    for (int k = 0; k < 9; k++) {
+      const double diagonal = k % 4 == 0 ? 1.0 : 0.0;
+      for (int i = 0; i < b.n; i++)
+        b.A[k][i] = ratio[i] * A.was[k][i] + diagonal * (ratio[i] - 1.0);
+      for (int i = 0; with_F && i < b.n; i++) b.F[k][i] = s.now[i] * F->was[k][i];
+    }
+  }
+
+ private:
+  Restored<double[9][BATCH]> A;
+  std::optional<Restored<double[9][BATCH]>> F;
+  Restored<double[BATCH]> J, Jold, vol0;
+};
 
 /** A material made of laws: the order in which they work on a batch, what they know of each other,
  *  their rows of history, and their parameters where these differ from point to point. Its
@@ -116,7 +170,6 @@ class ComposedMaterial : public Material {
   };
   void add(UsedLaw &law);
   void add(const UsedRange &range);
-  /** density or a parameter */
   void add(const UsedRandom &random);
   /** A parameter that depends on the temperature; a thermal one is in range at all temperatures. */
   void add(const UsedVary &vary, std::vector<Varied> &varied);

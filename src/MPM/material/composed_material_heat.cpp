@@ -19,7 +19,7 @@
 
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- conduction */
+// conduction
 
 Conduction ComposedMaterial::conduction(const double *history) const
 {
@@ -61,7 +61,7 @@ double ComposedMaterial::heat_of(const double *history) const
                       melts ? now[1] : 0.0);
 }
 
-/* ------------------------------------------------------------ heat for an internal energy */
+// heat for an internal energy
 
 const UsedLaw *ComposedMaterial::heating_of_energy() const
 {
@@ -143,7 +143,7 @@ void ComposedMaterial::remember_heat(Batch &b) const
     std::copy_n(b.history[thermal->history + k], b.n, b.history[heated + k]);
 }
 
-/* ------------------------------------------------------------------ stress by temperature */
+// stress by temperature
 
 void ComposedMaterial::depend_on_temperature()
 {
@@ -276,7 +276,7 @@ void ComposedMaterial::expanded_speed(const Batch &state, double *c) const
   }
 }
 
-/* ------------------------------------------------------------------- Gruneisen parameter */
+// Gruneisen parameter
 
 void ComposedMaterial::find_consistent_coupling()
 {
@@ -344,7 +344,7 @@ double ComposedMaterial::bulk_modulus(std::vector<double> initial) const
   return K;
 }
 
-/* ---------------------------------------------------------------------- enthalpy */
+// enthalpy
 
 double ComposedMaterial::thermal_value(const char *name) const
 {
@@ -390,8 +390,6 @@ law::HeatCurve ComposedMaterial::heat_curve() const
 {
   return {thermal->parameters, melting.point, melting.latent, melting.range};
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPM_NS::heat_since_start(const Material &material, const double *history)
 {

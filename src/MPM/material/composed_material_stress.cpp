@@ -9,13 +9,67 @@
 // A step of a material: the order in which its laws work on a batch.
 
 #include "material/composed_material.h"
-#include "material/melting_solid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 using namespace MPM_NS;
+
+namespace {
+
+/** The solid part of points that melt and solidify. It fills the fraction s of their volume and
+ *  bears the whole deviator S = s S_s of their stress, where S_s is the deviator in the solid.
+ *  Melting removes the elastic shear of the molten part and leaves S_s unchanged. Newly formed
+ *  solid is free of shear, which leaves S unchanged. The history of solid that melts is lost; newly
+ *  formed solid has a new history, and the point keeps the mean over its solid.
+ */
+class MeltingSolid {
+ public:
+  double share[BATCH];     ///< volume fraction of the solid now
+  bool changes = false;    ///< does the fraction of any point change in this step?
+  bool complete = true;    ///< are all points completely solid, before and now?
+  double before[BATCH];    ///< volume fraction of the solid at the start of the step
+
+  /** was: row with the solid fraction to which the stress belongs; molten: row with the molten
+   *  fraction. */
+  MeltingSolid(const Batch &b, const double *was, const double *molten)
+  {
+    for (int i = 0; i < b.n; i++) {
+      before[i] = was[i];
+      share[i] = std::max(1.0 - molten[i], 0.0);
+      changes = changes || share[i] != before[i];
+      complete = complete && share[i] == 1.0 && before[i] == 1.0;
+    }
+  }
+
+  /** Factor from the stress deviator of the point at the start of the step to that of its solid
+   *  now; 0 if the point is completely molten. */
+  double to_solid(int i) const
+  {
+    return share[i] > 0.0 ? 1.0 / std::max(share[i], before[i]) : 0.0;
+  }
+  /** Fraction of its history that the solid keeps. */
+  double kept(int i) const
+  {
+    return share[i] > before[i] ? before[i] / share[i] : share[i] > 0.0 ? 1.0 : 0.0;
+  }
+};
+
+/** While this object exists, the laws count their work only for a fraction of the volume of each
+ *  point. */
+class ShareOfVolume {
+ public:
+  ShareOfVolume(Batch &b, const double *share) : vol0(b.vol0)
+  {
+    for (int i = 0; i < b.n; i++) b.vol0[i] = share[i] * vol0.was[i];
+  }
+
+ private:
+  Restored<double[BATCH]> vol0;
+};
+
+}    // namespace
 
 void ComposedMaterial::initial_stress(Batch &b) const
 {
@@ -92,7 +146,7 @@ void ComposedMaterial::stored_energy(const Batch &state, double *w) const
   for (int i = 0; i < b.n; i++) w[i] *= s.volume(i);
 }
 
-/* ---------------------------------------------------------------------- a step */
+// a step
 
 void ComposedMaterial::update(Batch &b, Tangent *t) const
 {
@@ -237,7 +291,7 @@ void ComposedMaterial::add_energy(const UsedLaw *law, const Batch &b, double *w)
   if (law && law->kernels->energy) call(law->kernels->energy, *law, b, w);
 }
 
-/* ------------------------------------------------------------------- solids that melt */
+// solids that melt
 
 void ComposedMaterial::melt_and_solidify()
 {
@@ -330,7 +384,7 @@ void ComposedMaterial::run_liquid(const UsedLaw &law, Batch &b) const
       b.stress[k][i] = stress[k][i] + share[i] * (b.stress[k][i] - stress[k][i]);
 }
 
-/* ----------------------------------------------------------------------- viscous stress */
+// viscous stress
 
 template <class Work> void ComposedMaterial::with_viscous_stress(Batch &b, Work work) const
 {
@@ -353,7 +407,7 @@ const Batch &ComposedMaterial::without_viscous_stress(const Batch &b, Batch &cop
   return copy;
 }
 
-/* ---------------------------------------------------------- kernels, of all points or one by one */
+// kernels, of all points or one by one
 
 template <class Work>
 void ComposedMaterial::one_by_one(const UsedLaw &law, const Batch &b, Work work) const

@@ -28,7 +28,7 @@ constexpr double MOST_RATIO = 1e3;
 
 }    // namespace
 
-/* ---------------------------------------------------------------------- values at a point */
+// values at a point
 
 ComposedMaterial::LocalParameters::LocalParameters(const ComposedMaterial &material,
                                                    const UsedLaw &law) :
@@ -132,7 +132,7 @@ void ComposedMaterial::initialized() const
     for (const auto &r : law.random) r.field->release();
 }
 
-/* ---------------------------------------------------------------------- what a definition gives */
+// what a definition gives
 
 UsedLaw *ComposedMaterial::find_parameter(const std::string &wanted, ParameterPlace &place,
                                           std::string &choice, const std::string &what, int word,

@@ -21,8 +21,6 @@
 
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
-
 MaterialPoint::MaterialPoint(const Material &material, int n, double h) :
     material(material), storage(material.history().size() * BATCH)
 {
@@ -40,8 +38,6 @@ MaterialPoint::MaterialPoint(const Material &material, int n, double h) :
     for (int i = 0; i < n; i++) batch.history[k][i] = initial[k];
   material.initial_stress(batch);
 }
-
-/* ---------------------------------------------------------------------- */
 
 MaterialPoint::MaterialPoint(const MaterialPoint &other) :
     material(other.material), batch(other.batch), storage(other.storage), time(other.time),
@@ -78,8 +74,6 @@ void MaterialPoint::step(const double *L, double dt)
   move(A, dt);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MaterialPoint::move(const double *A, double dt)
 {
   double before[9], after[9], dF[9];
@@ -108,9 +102,7 @@ void MaterialPoint::move(const double *A, double dt)
   time += dt;
 }
 
-/* ----------------------------------------------------------------------
-   mixed control
-------------------------------------------------------------------------- */
+// mixed control
 
 namespace {
 
@@ -228,11 +220,8 @@ double norm(int n, const double *r)
 
 }    // namespace
 
-/* ----------------------------------------------------------------------
-   Newton iteration for the unknown strain increments with a numerical tangent; steps that do not
-   help are shortened, all lengths tried at once
-------------------------------------------------------------------------- */
-
+/** Newton iteration for the unknown strain increments with a numerical tangent; steps that do
+ *  not help are shortened, all lengths tried at once. */
 int MaterialPoint::step(const MixedControl &control, double dt, const double *new_rotation)
 {
   static constexpr int MAX_ITERATIONS = 60, LENGTHS = 12;
@@ -312,8 +301,6 @@ void MaterialPoint::step_uniaxial_stress(double rate, double dt)
   step(control, dt);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MaterialPoint::frame_state(double *F, double *stress) const
 {
   const Eigen::Map<const Matrix3> R(rotation);
@@ -323,8 +310,6 @@ void MaterialPoint::frame_state(double *F, double *stress) const
   const Matrix3 s = R.transpose() * stress_matrix(batch, 0) * R;
   for (int k = 0; k < 6; k++) stress[k] = s(VOIGT[k][0], VOIGT[k][1]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MaterialPoint::density() const
 {

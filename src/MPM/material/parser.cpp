@@ -17,7 +17,7 @@
 //   at most one          thermal adiabatic | conducting | constant ...
 //   any number of        range QUANTITY LOW HIGH
 //   any number of        random PARAMETER lognormal | normal COV LENGTH SEED
-//   any number of        vary PARAMETER table T F ... | linear | power | ... (see TemperatureFactor)
+//   any number of        vary PARAMETER table T F ... | linear | ... (see TemperatureFactor)
 //
 // in any order. What follows the name of a law is in the declaration of its parameters.
 

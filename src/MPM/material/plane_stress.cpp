@@ -8,6 +8,7 @@
 
 #include "material/plane_stress.h"
 
+#include "material/material_point.h"
 #include "math/matrix.h"
 
 #include <algorithm>
@@ -27,8 +28,6 @@ static constexpr double BROKEN = 1.0e-8;
 static constexpr int MOST_ATTEMPTS = 4;
 // axes of a surface that has collapsed to a line are those of before
 static constexpr double COLLAPSED = 1.0e-12;
-
-/* ---------------------------------------------------------------------- */
 
 PlaneStress::PlaneStress(const Material &material, int dim, int along, bool compression,
                          bool axes) :
@@ -87,11 +86,8 @@ void PlaneStress::make_frame(const double *a, const double *b, double (*frame)[3
   cross(frame[0], second, frame[2]);
 }
 
-/* ----------------------------------------------------------------------
-   another reference configuration, turned so that its axes x y z are those of the frame, has the
-   same stress
-------------------------------------------------------------------------- */
-
+/** Another reference configuration, turned so that its axes x y z are those of the frame, has
+ *  the same stress. */
 void PlaneStress::turn_to_material(const Point &point, double *F) const
 {
   if (!axes) return;
@@ -102,11 +98,8 @@ void PlaneStress::turn_to_material(const Point &point, double *F) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   principal stretches and axes, at the start and the end. Axes across a line turn as little as the
-   line does
-------------------------------------------------------------------------- */
-
+/** Principal stretches and axes, at the start and the end. Axes across a line turn as little as
+ *  the line does. */
 void PlaneStress::find_axes(const Point &point, State &s) const
 {
   std::memcpy(s.N, point.frame, sizeof(s.N));
@@ -171,8 +164,6 @@ void PlaneStress::divide(State &s, int first) const
   for (int k = first; k < last_axis(); k++) add_outer(1.0, s.n[k], s.N[k], s.across);
   if (dim == 2) s.fixed[8] = 1.0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void PlaneStress::keep(const Batch &b)
 {
@@ -297,8 +288,6 @@ int PlaneStress::solve(Batch &b, const Point *point)
   return bad;
 }
 
-/* ---------------------------------------------------------------------- */
-
 int PlaneStress::update(Batch &b, const Point *point, const std::function<void(Batch &)> &last)
 {
   keep(b);
@@ -339,11 +328,6 @@ int PlaneStress::update(Batch &b, const Point *point, const std::function<void(B
   return -1;
 }
 
-/* ----------------------------------------------------------------------
-   Is the stress of a small strain turned by what turns the strain? If not, does a strain that is
-   the same on both sides of the plane of axes 1 and 2 cause a stress that is?
-------------------------------------------------------------------------- */
-
 namespace {
 
 // a small compression, which all materials resist
@@ -352,30 +336,15 @@ constexpr double UNIT[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 constexpr double STRAINED[9] = {1.0 - SMALL, 0.1 * SMALL, 0.0, 0.1 * SMALL,      1.0 - 0.8 * SMALL,
                                 0.0,         0.0,         0.0, 1.0 - 0.7 * SMALL};
 
-/** A batch with one point at rest, without deformation. */
-struct One {
-  Batch b = {};
-  std::vector<double> history;
-
-  explicit One(const Material &material) :
-      history(std::max<std::size_t>(1, material.history().size()) * BATCH)
-  {
-    const double origin[3] = {0.0, 0.0, 0.0};
-    std::vector<double> values(material.history().size());
-    if (!values.empty()) material.initialize(origin, values.data());
-    for (std::size_t k = 0; k < values.size(); k++) history[k * BATCH] = values[k];
-    b.n = 1;
-    b.dt = b.vol0[0] = 1.0;
-    b.h = SMALL;    // else what breaks would do so at once
-    b.history = reinterpret_cast<double(*)[BATCH]>(history.data());
-    for (int c = 0; c < 9; c += 4) b.F[c][0] = 1.0;
-    b.J[0] = b.Jold[0] = 1.0;
-    material.initial_stress(b);
-  }
+/** A point at rest, without deformation. Its length is small, as what breaks would do so at
+ *  once. */
+struct One : MaterialPoint {
+  explicit One(const Material &material) : MaterialPoint(material, 1, SMALL) {}
 
   /** From old to F. */
-  void go(const Material &material, const double *old, const double *F)
+  void go(const double *old, const double *F)
   {
+    Batch &b = batch;
     double inverse[9] = MPM_COFACTORS(old), change[9];
     b.Jold[0] = determinant(old);
     b.J[0] = determinant(F);
@@ -393,7 +362,7 @@ struct One {
   void get(double *m) const
   {
     static constexpr int voigt[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
-    for (int c = 0; c < 9; c++) m[c] = b.stress[voigt[c]][0];
+    for (int c = 0; c < 9; c++) m[c] = stress(voigt[c]);
   }
 };
 
@@ -416,6 +385,8 @@ void turn(const double *R, const double *m, double *to)
 
 }    // namespace
 
+/** Is the stress of a small strain turned by what turns the strain? If not, does a strain that is
+ *  the same on both sides of the plane of axes 1 and 2 cause a stress that is? */
 void PlaneStress::check_symmetry()
 {
   // about x + y by one radian, which is no symmetry of anything
@@ -425,7 +396,7 @@ void PlaneStress::check_symmetry()
                        -r * s,          r * s,           c};
   double strained[9], stress[9], wanted[9], turned[9];
   One one(material), other(material);
-  one.go(material, UNIT, STRAINED);
+  one.go(UNIT, STRAINED);
   one.get(stress);
   stiffness = norm(stress) / SMALL;
   // of a fluid without viscosity: a pressure, which vanishes with the stress across
@@ -437,7 +408,7 @@ void PlaneStress::check_symmetry()
         "it resists no shear, and bears nothing along either then: use a solid");
   turn(R, stress, wanted);
   turn(R, STRAINED, strained);
-  other.go(material, UNIT, strained);
+  other.go(UNIT, strained);
   other.get(turned);
   for (int k = 0; k < 9; k++) turned[k] -= wanted[k];
   const bool isotropic = norm(turned) <= SAME * norm(wanted);
@@ -456,17 +427,17 @@ void PlaneStress::check_elasticity() const
     throw std::runtime_error("it must be elastic, without history variables");
   double rest[9], stress[9], again[9];
   One one(material);
-  one.go(material, UNIT, UNIT);
+  one.go(UNIT, UNIT);
   one.get(rest);
-  one.go(material, UNIT, STRAINED);
+  one.go(UNIT, STRAINED);
   one.get(stress);
-  one.go(material, STRAINED, STRAINED);
+  one.go(STRAINED, STRAINED);
   one.get(again);
   for (int k = 0; k < 9; k++) again[k] -= stress[k];
   One faster(material);
   double quick[9];
-  faster.b.dt = 1.0e-3;
-  faster.go(material, UNIT, STRAINED);
+  faster.batch.dt = 1.0e-3;
+  faster.go(UNIT, STRAINED);
   faster.get(quick);
   for (int k = 0; k < 9; k++) quick[k] -= stress[k];
   if (!(norm(again) <= SAME * norm(stress) && norm(quick) <= SAME * norm(stress)))
@@ -483,7 +454,7 @@ std::array<double, 2> PlaneStress::elastic_constants() const
   check_elasticity();
   double stress[9];
   One one(material);
-  one.go(material, UNIT, STRAINED);
+  one.go(UNIT, STRAINED);
   one.get(stress);
   const double trace = STRAINED[0] + STRAINED[4] + STRAINED[8] - 3.0;
   const double mu = 0.5 * stress[1] / STRAINED[1],

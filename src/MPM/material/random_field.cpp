@@ -117,11 +117,8 @@ RandomField::RandomField(double length, uint64_t seed) :
 
 RandomField::~RandomField() = default;
 
-/* ----------------------------------------------------------------------
-   normal deviates of the nodes (i,j,k) and (i,j,k+1), k even (G.E.P. Box, M.E. Muller, Ann. Math.
-   Stat. 29 (1958) 610), from two hashes of the indices
-------------------------------------------------------------------------- */
-
+/** Normal deviates of the nodes (i,j,k) and (i,j,k+1), k even (G.E.P. Box, M.E. Muller, Ann.
+ *  Math. Stat. 29 (1958) 610), from two hashes of the indices. */
 void RandomField::noise(int64_t i, int64_t j, int64_t k, double *pair) const
 {
   uint64_t h = mix_bits(seed + RANDOM_STEP);
@@ -132,8 +129,6 @@ void RandomField::noise(int64_t i, int64_t j, int64_t k, double *pair) const
   pair[0] = radius * std::cos(2.0 * PI * v);
   pair[1] = radius * std::sin(2.0 * PI * v);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double RandomField::value(const double *x) const
 {

@@ -48,7 +48,21 @@ class BagGas {
    *  p, choked at the speed of sound (A.H. Shapiro, Compressible Fluid Flow I (1953), chapter 4); 0
    *  if q is not below p. RT: R times the temperature at pressure p. The unit is that of (p/(R T))
    *  sqrt(R T). */
-  static double flow(double p, double q, double RT, double gamma);
+  static double flow(double p, double q, double RT, double gamma)
+  {
+    if (!(p > q)) return 0.0;
+    const double r = q / p;
+    if (gamma == 1.0) {    // limit of the expressions below
+      const double least = std::exp(-0.5);
+      return p / std::sqrt(RT) * (r <= least ? least : r * std::sqrt(-2.0 * std::log(r)));
+    }
+    const double least = std::pow(2.0 / (gamma + 1.0), gamma / (gamma - 1.0));
+    if (r <= least)
+      return p * std::sqrt(gamma / RT) *
+          std::pow(2.0 / (gamma + 1.0), 0.5 * (gamma + 1.0) / (gamma - 1.0));
+    return p * std::sqrt(2.0 * gamma / ((gamma - 1.0) * RT)) * std::pow(r, 1.0 / gamma) *
+        std::sqrt(1.0 - std::pow(r, (gamma - 1.0) / gamma));
+  }
 };
 
 }    // namespace MPM_NS

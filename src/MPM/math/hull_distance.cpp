@@ -21,12 +21,9 @@ static constexpr double ROUNDING =
     1.0e-15;    // of products, relative to the lengths of the two vectors
 static constexpr double ZERO = 1.0e-12;    // of shares
 
-/* ----------------------------------------------------------------------
-   A corner is added, then those are left out that the point of least norm in the plane through all
-   does not need. What is left to gain ends at rounding: with a larger tolerance the direction would
-   jump while rows of points turn
-------------------------------------------------------------------------- */
-
+/** A corner is added, then those are left out that the point of least norm in the plane through
+ *  all does not need. What is left to gain ends at rounding: with a larger tolerance the
+ *  direction would jump while rows of points turn. */
 void HullDistance::advance(const double *a, const double *b)
 {
   if (done) return;

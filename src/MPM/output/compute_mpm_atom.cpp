@@ -119,8 +119,6 @@ static const ComputeMPMAtom::Quantity quantities[] = {
     {"angmom", &Point::angmom, {"/x", "/y", "/z"}},
 };
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<std::string> ComputeMPMAtom::expand(const std::string &name)
 {
   std::vector<std::string> names;
@@ -139,8 +137,6 @@ ComputeMPMAtom::Column ComputeMPMAtom::find_column(const std::string &name)
       if (name == quantity.name + quantity.components[k]) return {name, &quantity, (int) k};
   return {name, nullptr, 0};
 }
-
-/* ---------------------------------------------------------------------- */
 
 ComputeMPMAtom::ComputeMPMAtom(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), points(MPMPoints::get(atom))
@@ -163,14 +159,10 @@ ComputeMPMAtom::ComputeMPMAtom(LAMMPS *lmp, int narg, char **arg) :
   size_peratom_cols = columns.size() == 1 ? 0 : (int) columns.size();
 }
 
-/* ---------------------------------------------------------------------- */
-
 ComputeMPMAtom::~ComputeMPMAtom()
 {
   memory->destroy(array_atom);
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string ComputeMPMAtom::known_names() const
 {
@@ -191,8 +183,6 @@ std::string ComputeMPMAtom::known_names() const
   return text;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void ComputeMPMAtom::init()
 {
   points = MPMPoints::get(atom);
@@ -206,8 +196,8 @@ std::string ComputeMPMAtom::whose() const
   return owner.empty() ? fmt::format("compute {} of style mpm/atom", id) : owner;
 }
 
-/** A name that is none of the table must be one of other physics or a history variable of a material that there
- *  are now. */
+/** A name that is none of the table must be one of other physics or a history variable of a
+ *  material that there are now. */
 void ComputeMPMAtom::find_owners()
 {
   for (auto &column : columns) {
@@ -228,8 +218,6 @@ void ComputeMPMAtom::find_owners()
                  whose(), known_names());
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeMPMAtom::compute_peratom()
 {
@@ -285,8 +273,6 @@ void ComputeMPMAtom::compute_peratom()
           }
         });
 }
-
-/* ---------------------------------------------------------------------- */
 
 double ComputeMPMAtom::memory_usage()
 {

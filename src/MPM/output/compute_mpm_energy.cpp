@@ -23,8 +23,6 @@
 
 using namespace LAMMPS_NS;
 
-/* ---------------------------------------------------------------------- */
-
 ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
   if (narg > 3) error->all(FLERR, 3, "Unknown compute mpm/energy argument: {}", arg[3]);
@@ -42,8 +40,6 @@ ComputeMPMEnergy::ComputeMPMEnergy(LAMMPS *lmp, int narg, char **arg) : Compute(
   vector = entries.data();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void ComputeMPMEnergy::init()
 {
   if (modify->get_fix_by_style("^mpm$").empty())
@@ -59,11 +55,8 @@ void ComputeMPMEnergy::init()
   forget_lost_parts();
 }
 
-/* ----------------------------------------------------------------------
-   a fix that was removed, or defined again, takes what it has kept of the ledger with it: of the rest
-   there is no balance, and the ledger starts anew
-------------------------------------------------------------------------- */
-
+/** A fix that was removed, or defined again, takes what it has kept of the ledger with it: of
+ *  the rest there is no balance, and the ledger starts anew. */
 void ComputeMPMEnergy::forget_lost_parts()
 {
   std::vector<int> now;
@@ -83,10 +76,7 @@ void ComputeMPMEnergy::forget_lost_parts()
   contributors = now;
 }
 
-/* ----------------------------------------------------------------------
-   the ledger starts with the first run after the definition, or goes on from a restart file
-------------------------------------------------------------------------- */
-
+/** The ledger starts with the first run after the definition, or goes on from a restart file. */
 void ComputeMPMEnergy::begin()
 {
   forget_lost_parts();
@@ -99,11 +89,9 @@ void ComputeMPMEnergy::begin()
     }
 }
 
-/* ----------------------------------------------------------------------
-   other physics: a letter for each account tells stored energy from energy that came to the bodies, both from those
-   that are in the entry of time integration, and from thermoelastic work, which is one of the sums
-------------------------------------------------------------------------- */
-
+/** Accounts of other physics, each with a letter: S for stored energy, C for energy that came to
+ *  the bodies, T for thermoelastic work, which is one of the sums; I: it is in the entry of time
+ *  integration, too. */
 std::vector<std::string> ComputeMPMEnergy::find_accounts() const
 {
   std::vector<std::string> names;
@@ -118,8 +106,6 @@ std::vector<std::string> ComputeMPMEnergy::find_accounts() const
     }
   return names;
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::vector<double> ComputeMPMEnergy::evaluate() const
 {
@@ -151,8 +137,6 @@ std::vector<double> ComputeMPMEnergy::evaluate() const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double ComputeMPMEnergy::compute_scalar()
 {
   if (invoked_vector != update->ntimestep) compute_vector();
@@ -162,8 +146,6 @@ double ComputeMPMEnergy::compute_scalar()
     if (accounts[k][0] != 'C') scalar += vector[NENTRY + k];
   return scalar;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void ComputeMPMEnergy::compute_vector()
 {

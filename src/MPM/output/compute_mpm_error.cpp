@@ -23,10 +23,7 @@
 
 using namespace LAMMPS_NS;
 
-/* ----------------------------------------------------------------------
-   compute ID group mpm/error  value exact  value exact ...
-------------------------------------------------------------------------- */
-
+/** compute ID group mpm/error  value exact  value exact ... */
 ComputeMPMError::ComputeMPMError(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
   if (narg < 5) utils::missing_cmd_args(FLERR, "compute mpm/error", error);
@@ -46,8 +43,6 @@ ComputeMPMError::ComputeMPMError(LAMMPS *lmp, int narg, char **arg) : Compute(lm
   extscalar = extvector = 0;
   vector = norms;
 }
-
-/* ---------------------------------------------------------------------- */
 
 ComputeMPMError::Value ComputeMPMError::parse(const char *text, int iarg, bool is_exact)
 {
@@ -72,10 +67,7 @@ ComputeMPMError::Value ComputeMPMError::parse(const char *text, int iarg, bool i
   return value;
 }
 
-/* ----------------------------------------------------------------------
-   does what a value refers to exist, and is it per atom?
-------------------------------------------------------------------------- */
-
+/** Does what a value refers to exist, and is it per atom? */
 void ComputeMPMError::check(Value &value)
 {
   const auto check_source = [&](const char *what, const auto *source) {
@@ -104,17 +96,12 @@ void ComputeMPMError::check(Value &value)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void ComputeMPMError::init()
 {
   for (auto &value : values) check(value);
 }
 
-/* ----------------------------------------------------------------------
-   a quantity of all atoms of this rank
-------------------------------------------------------------------------- */
-
+/** A quantity of all atoms of this rank. */
 void ComputeMPMError::get(const Value &value, std::vector<double> &out)
 {
   const int nlocal = atom->nlocal;
@@ -151,8 +138,6 @@ void ComputeMPMError::get(const Value &value, std::vector<double> &out)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void ComputeMPMError::compute_vector()
 {
   invoked_vector = update->ntimestep;
@@ -188,16 +173,12 @@ void ComputeMPMError::compute_vector()
   scalar = vector[L2];
 }
 
-/* ---------------------------------------------------------------------- */
-
 double ComputeMPMError::compute_scalar()
 {
   if (invoked_vector != update->ntimestep) compute_vector();
   invoked_scalar = update->ntimestep;
   return scalar;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double ComputeMPMError::memory_usage()
 {

@@ -20,10 +20,7 @@ using namespace MPM_NS;
 const std::vector<DumpMPMGridVTK::Quantity> DumpMPMGridVTK::known = {
     {"mass", MASS, 1}, {"velocity", VELOCITY, 3}, {"momentum", VELOCITY, 3}, {"index", INDEX, 3}};
 
-/* ----------------------------------------------------------------------
-   dump ID all mpm/grid/vtk N file.*.vtu FIXID field ...
-------------------------------------------------------------------------- */
-
+/** dump ID all mpm/grid/vtk N file.*.vtu FIXID field ... */
 DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) : DumpVTKSeries(lmp, narg, arg)
 {
   const ErrorWords these(lmp, narg, arg);
@@ -55,8 +52,6 @@ DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) : DumpVTKSerie
   size_one = NCOLUMN;
 }
 
-/* ---------------------------------------------------------------------- */
-
 MPMField *DumpMPMGridVTK::find_field() const
 {
   auto *fix = modify->get_fix_by_id(fix_id);
@@ -70,8 +65,6 @@ MPMField *DumpMPMGridVTK::find_field() const
   return found;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void DumpMPMGridVTK::init_style()
 {
   field = find_field();
@@ -82,10 +75,7 @@ void DumpMPMGridVTK::init_style()
   if (multifile == 0) openfile();
 }
 
-/* ----------------------------------------------------------------------
-   rows of all nodes with mass that this process owns
-------------------------------------------------------------------------- */
-
+/** Rows of all nodes with mass that this process owns. */
 int DumpMPMGridVTK::count()
 {
   rows.clear();
@@ -106,10 +96,7 @@ void DumpMPMGridVTK::pack(tagint *)
   std::copy(rows.begin(), rows.end(), buf);
 }
 
-/* ----------------------------------------------------------------------
-   the process that writes collects all rows, since cells need the nodes of all processes
-------------------------------------------------------------------------- */
-
+/** The process that writes collects all rows, since cells need the nodes of all processes. */
 void DumpMPMGridVTK::write_header(bigint nnode)
 {
   rows.clear();
@@ -120,8 +107,6 @@ void DumpMPMGridVTK::write_data(int n, double *more)
 {
   rows.insert(rows.end(), more, more + (bigint) n * NCOLUMN);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void DumpMPMGridVTK::write_footer()
 {

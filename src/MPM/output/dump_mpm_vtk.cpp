@@ -50,8 +50,6 @@ static const std::set<std::string> integers = {"id",     "type", "mol", "proc",
 
 static const char PREFIX[] = "quantity:";    // marks a name of compute mpm/atom
 
-/* ---------------------------------------------------------------------- */
-
 DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
 {
   auto *error = lmp->error;
@@ -149,8 +147,6 @@ void DumpMPMVTK::Request::add_field(const std::string &name, int iarg)
   fields.push_back(field);
 }
 
-/* ---------------------------------------------------------------------- */
-
 DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, int narg, char **arg) :
     DumpMPMVTK(lmp, std::make_unique<Request>(lmp, narg, arg))
 {
@@ -162,8 +158,6 @@ DumpMPMVTK::DumpMPMVTK(LAMMPS *lmp, std::unique_ptr<Request> custom) :
   request->shown.reset();
   begin_series();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void DumpMPMVTK::init_style()
 {
@@ -184,10 +178,7 @@ void DumpMPMVTK::init_style()
   DumpCustom::init_style();
 }
 
-/* ----------------------------------------------------------------------
-   only called by the process that writes
-------------------------------------------------------------------------- */
-
+/** Only called by the process that writes. */
 void DumpMPMVTK::write_header(bigint npoint)
 {
   vtk = VTKFile("PolyData", compress);
@@ -206,8 +197,6 @@ void DumpMPMVTK::write_header(bigint npoint)
   nwritten = 0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void DumpMPMVTK::write_field(const Field &field, int array, int n, const double *rows)
 {
   const int ncomponent = (int) field.columns.size();
@@ -218,10 +207,7 @@ void DumpMPMVTK::write_field(const Field &field, int array, int n, const double 
   vtk.write(array, nwritten, n, values.data());
 }
 
-/* ----------------------------------------------------------------------
-   rows of the next process
-------------------------------------------------------------------------- */
-
+/** Rows of the next process. */
 void DumpMPMVTK::write_data(int n, double *rows)
 {
   int array = 0;
@@ -238,8 +224,6 @@ void DumpMPMVTK::write_data(int n, double *rows)
 
   nwritten += n;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void DumpMPMVTK::write_footer()
 {

@@ -22,8 +22,8 @@ DumpStyle(mpm/vtk,DumpMPMVTK);
 
 namespace LAMMPS_NS {
 
-/** Points as VTK PolyData for ParaView: one file per snapshot, or several pieces with a list of them,
- *  and a list of all snapshots with their times.
+/** Points as VTK PolyData for ParaView: one file per snapshot, or several pieces with a list of
+ *  them, and a list of all snapshots with their times.
  *
  *  A dump custom whose fields may have several components. Names of compute mpm/atom become columns
  *  of an internal compute, so that dump custom selects, sorts, and communicates the atoms.

@@ -36,10 +36,7 @@ static const struct {
 } fields[NAVERAGE] = {
     {"density", 0}, {"velocity", 3}, {"stress", 6}, {"pressure", 0}, {"fraction", 0}};
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/cells FIXID
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/cells FIXID */
 FixMPMCells::FixMPMCells(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/cells", error);
@@ -53,10 +50,7 @@ FixMPMCells::FixMPMCells(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg
   FixMPMCells::reset_grid();
 }
 
-/* ----------------------------------------------------------------------
-   the number of cells that come closest to those of the lattice
-------------------------------------------------------------------------- */
-
+/** The number of cells that come closest to those of the lattice. */
 void FixMPMCells::set_size()
 {
   const auto *field = MPMField::find(lmp, field_id);
@@ -67,8 +61,6 @@ void FixMPMCells::set_size()
     ncell[d] = d < dim ? std::max(1, (int) std::lround(domain->prd[d] / field->lattice.h)) : 1;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMCells::init()
 {
   const int old[3] = {ncell[0], ncell[1], ncell[2]};
@@ -77,10 +69,7 @@ void FixMPMCells::init()
   filled = -1;
 }
 
-/* ----------------------------------------------------------------------
-   the partition has changed; points may not have migrated yet
-------------------------------------------------------------------------- */
-
+/** The partition has changed; points may not have migrated yet. */
 void FixMPMCells::reset_grid()
 {
   deallocate();
@@ -137,8 +126,6 @@ double *FixMPMCells::value(int k, int x, int y, int z)
   return a.scalar ? &a.scalar[z][y][x] : a.vector[z][y][x];
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMCells::sum_points()
 {
   sums.assign(all.size() * NSUM, 0.0);
@@ -193,8 +180,6 @@ void FixMPMCells::unpack_reverse_grid(int, void *vbuf, int nlist, int *list)
     for (int k = 0; k < NSUM; k++) sums[(bigint) list[i] * NSUM + k] += *buf++;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMCells::average()
 {
   double area = 1.0;
@@ -218,9 +203,7 @@ void FixMPMCells::average()
       }
 }
 
-/* ----------------------------------------------------------------------
-   what dump grid and fix ave/grid ask for
-------------------------------------------------------------------------- */
+// what dump grid and fix ave/grid ask for
 
 int FixMPMCells::get_grid_by_name(const std::string &name, int &dimension)
 {
@@ -260,8 +243,6 @@ void *FixMPMCells::get_griddata_by_index(int index)
   if (a.scalar) return a.scalar[0];
   return a.vector ? a.vector[0] : nullptr;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixMPMCells::memory_usage()
 {

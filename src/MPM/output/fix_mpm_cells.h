@@ -57,8 +57,8 @@ class FixMPMCells : public Fix {
           lo[0];
     }
   };
-  /** An average: an array of one value or of several columns per cell, the other pointer is null. In 2d,
-   *  LAMMPS gets the part z = 0. */
+  /** An average: an array of one value or of several columns per cell, the other pointer is null.
+   *  In 2d, LAMMPS gets the part z = 0. */
   struct Average {
     double ***scalar;     // [z][y][x]
     double ****vector;    // [z][y][x][column]

@@ -24,10 +24,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm/record FILE keyword value ...
-------------------------------------------------------------------------- */
-
+/** fix ID group mpm/record FILE keyword value ... */
 Options MPMRecordOptions::declare()
 {
   using namespace option;

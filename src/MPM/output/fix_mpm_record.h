@@ -24,7 +24,6 @@ FixStyle(mpm/record,FixMPMRecord);
 
 namespace LAMMPS_NS {
 
-/** Keywords of fix mpm/record. */
 struct MPMRecordOptions {
   double start = 0.0;
   bool hold = true;
@@ -32,7 +31,8 @@ struct MPMRecordOptions {
   MPM_NS::Options declare();
 };
 
-/** Values from a file at the present time, for use in variables: each column, and its integral over time. */
+/** Values from a file at the present time, for use in variables: each column, and its integral over
+ *  time. */
 class FixMPMRecord : public Fix, private MPMRecordOptions {
  public:
   FixMPMRecord(class LAMMPS *, int, char **);

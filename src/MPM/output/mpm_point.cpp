@@ -26,7 +26,6 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 using namespace LAMMPS_NS;
@@ -39,16 +38,12 @@ static constexpr int place[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 
 static const char *const path_name[] = {"uniaxial/stress", "uniaxial/strain", "shear", "biaxial",
                                         "triaxial",        "volumetric",      "shock", "mixed"};
 
-/* ---------------------------------------------------------------------- */
-
 MPMPoint::MPMPoint(LAMMPS *lmp) : Command(lmp) {}
 
 MPMPoint::~MPMPoint()
 {
   if (fp) fclose(fp);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPoint::command(int narg, char **arg)
 {
@@ -88,10 +83,7 @@ void MPMPoint::command(int narg, char **arg)
     utils::logmesg(lmp, "  {:.1f} iterations per step\n", double(iterations) / nsteps);
 }
 
-/* ----------------------------------------------------------------------
-   mpm_point FILE PATH values keyword values ... material definition
-------------------------------------------------------------------------- */
-
+/** mpm_point FILE PATH values keyword values ... material definition */
 Options MPMPointOptions::declare()
 {
   using namespace option;
@@ -196,8 +188,6 @@ void MPMPoint::parse(int narg, char **arg)
   material = read_material(lmp, "Mpm_point", iarg + 1, narg, arg);
 }
 
-/* ---------------------------------------------------------------------- */
-
 double MPMPoint::value_at(const NumberOrVariable &v, double time)
 {
   if (v.variable.empty()) return v.value;
@@ -214,11 +204,8 @@ double MPMPoint::path_strain(double time) const
   return rate > 0.0 ? amplitude * s : -amplitude * s;
 }
 
-/* ----------------------------------------------------------------------
-   what is prescribed in a step from t0 to t1; before the start of a triaxial test: isotropic, with
-   this share of the confining pressure at the end of the step
-------------------------------------------------------------------------- */
-
+/** What is prescribed in a step from t0 to t1; before the start of a triaxial test: isotropic,
+ *  with this share of the confining pressure at the end of the step. */
 MixedControl MPMPoint::control(double t0, double t1, bool started, double share)
 {
   MixedControl c;
@@ -269,8 +256,6 @@ MixedControl MPMPoint::control(double t0, double t1, bool started, double share)
   return c;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPoint::run_path(MaterialPoint &point)
 {
   const double dt = duration / nsteps;
@@ -298,11 +283,8 @@ void MPMPoint::run_path(MaterialPoint &point)
   }
 }
 
-/* ----------------------------------------------------------------------
-   states behind shocks of growing strength: each is reached from the initial state in one step,
-   for which the work of the mean stress is the jump condition of energy (Rankine, Hugoniot)
-------------------------------------------------------------------------- */
-
+/** States behind shocks of growing strength: each is reached from the initial state in one step,
+ *  for which the work of the mean stress is the jump condition of energy (Rankine, Hugoniot). */
 void MPMPoint::run_shock(MaterialPoint &initial)
 {
   write(initial, 0);
@@ -315,8 +297,6 @@ void MPMPoint::run_shock(MaterialPoint &initial)
     write(point, step);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPoint::set_temperature(MaterialPoint &point)
 {
@@ -354,12 +334,10 @@ void MPMPoint::check(const MaterialPoint &point, bigint step)
   }
 }
 
-/* ----------------------------------------------------------------------
-   logarithmic strain (ln b)/2, b = F F^T. Of the eigenvalues of b, rounding of the largest one leaves
-   nothing of one that is smaller by 10^16. So when they differ much, the smallest stretch is the
-   inverse of the largest one of F^-1 = (cof F)^T/J, and that in the middle what these leave of J
-------------------------------------------------------------------------- */
-
+/** Logarithmic strain (ln b)/2, b = F F^T. Of the eigenvalues of b, rounding of the largest one
+ *  leaves nothing of one that is smaller by 10^16. So when they differ much, the smallest
+ *  stretch is the inverse of the largest one of F^-1 = (cof F)^T/J, and that in the middle what
+ *  these leave of J. */
 static Eigen::Matrix3d log_strain(const Matrix3 &F, double J)
 {
   using Solver = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
@@ -389,10 +367,6 @@ static Eigen::Matrix3d log_strain(const Matrix3 &F, double J)
   const Eigen::Vector3d e(most, of_two - most, log(J) - of_two);
   return axes * e.asDiagonal() * axes.transpose();
 }
-
-/* ----------------------------------------------------------------------
-   table: comment lines with what it is, names of the columns, one row per output
-------------------------------------------------------------------------- */
 
 /** All that is known of a point, in the order of the columns. */
 std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &point, bigint step)
@@ -445,6 +419,8 @@ std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &p
   return row;
 }
 
+/** A line of the table, behind lines of comment and the names of the columns, and one of the
+ *  log. */
 void MPMPoint::write(const MaterialPoint &point, bigint step)
 {
   const bool first = step == (path == TRIAXIAL && pressure > 0.0 ? -CONSOLIDATION_STEPS : 0);

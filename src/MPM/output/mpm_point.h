@@ -63,7 +63,8 @@ struct MPMPointOptions {
   MPM_NS::Options declare();
 };
 
-/** Command mpm_point: drives one material point along a path of strain or stress, and writes a table. */
+/** Command mpm_point: drives one material point along a path of strain or stress, and writes a
+ *  table. */
 class MPMPoint : public Command, private MPMPointOptions {
  public:
   MPMPoint(class LAMMPS *);

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <new>
 
 #ifdef MPM_ZLIB
@@ -52,8 +51,6 @@ static const char *byte_order()
   return *reinterpret_cast<const char *>(&one) ? "LittleEndian" : "BigEndian";
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::string VTKFile::without_percent(const std::string &name)
 {
   const auto at = name.find('%');
@@ -65,8 +62,6 @@ std::string VTKFile::without_percent(const std::string &name)
   if (at > 0 && separates(at - 1)) return name.substr(0, at - 1) + name.substr(at + 1);
   return name.substr(0, at) + name.substr(at + (separates(at + 1) ? 2 : 1));
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string VTKFile::name_error(const std::string &name, const std::string &extension, bool series,
                                 bool pieces)
@@ -94,8 +89,6 @@ std::string VTKFile::name_error(const std::string &name, const std::string &exte
   return "";
 }
 
-/* ---------------------------------------------------------------------- */
-
 int LAMMPS_NS::read_compress(LAMMPS *lmp, int narg, char **arg, bool &compress)
 {
   Options o("dump_modify");
@@ -108,16 +101,12 @@ int LAMMPS_NS::read_compress(LAMMPS *lmp, int narg, char **arg, bool &compress)
   return 2;
 }
 
-/* ---------------------------------------------------------------------- */
-
 int VTKFile::add(const std::string &section, const std::string &name, Type type, int ncomponent,
                  int64_t ntuple)
 {
   arrays.push_back({section, name, type, ncomponent, 0, ntuple * ncomponent * types[type].bytes});
   return (int) arrays.size() - 1;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void VTKFile::begin(FILE *fp_in, const std::string &piece, const std::string &units, double time,
                     int64_t step)
@@ -179,8 +168,6 @@ void VTKFile::write_header()
   start = (int64_t) text.size();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void VTKFile::write(int array, int64_t first, int64_t n, const double *values)
 {
   Array &a = arrays[array];
@@ -207,8 +194,6 @@ void VTKFile::write(int array, int64_t first, int64_t n, const double *values)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 #ifdef MPM_ZLIB
 
 bool VTKFile::can_compress()
@@ -216,8 +201,8 @@ bool VTKFile::can_compress()
   return true;
 }
 
-/** Compress a block. Higher levels than the fastest need two to six times its time, and do not make the
- *  files smaller: what helps is mostly that the upper bytes of numbers are equal. */
+/** Compresses a block. Higher levels than the fastest need two to six times its time, and do not
+ *  make the files smaller: what helps is mostly that the upper bytes of numbers are equal. */
 void VTKFile::pack(Array &a)
 {
   uLongf size = compressBound(a.pending.size());
@@ -242,11 +227,8 @@ void VTKFile::pack(Array &) {}
 
 #endif
 
-/* ----------------------------------------------------------------------
-   before the blocks of an array: their number, the size of all but the last and that of the last if it is
-   smaller (or 0), not compressed, and the size of each, compressed
-------------------------------------------------------------------------- */
-
+/** Before the blocks of an array: their number, the size of all but the last and that of the
+ *  last if it is smaller (or 0), not compressed, and the size of each, compressed. */
 void VTKFile::end()
 {
   if (!compressed) return;
@@ -271,8 +253,6 @@ void VTKFile::end()
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::string VTKFile::list_of_pieces(const std::vector<std::string> &names) const
 {
   std::string text = fmt::format("<?xml version=\"1.0\"?>\n"
@@ -290,8 +270,6 @@ std::string VTKFile::list_of_pieces(const std::vector<std::string> &names) const
   for (const auto &name : names) text += fmt::format("<Piece Source=\"{}\"/>\n", name);
   return text + fmt::format("</P{}>\n</VTKFile>\n", kind);
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::string VTKCollection::list_name(const std::string &pattern_with_percent,
                                      const std::string &fallback, const std::string &suffix)
@@ -352,8 +330,6 @@ std::string VTKCollection::add(const std::string &path, double time, int keep, b
   ok = ok && rename(aside.c_str(), list.c_str()) == 0;
   return ok ? "" : fmt::format("cannot write the list of files {}: {}", list, strerror(errno));
 }
-
-/* ---------------------------------------------------------------------- */
 
 ErrorWords::ErrorWords(LAMMPS *lmp, int narg, char **arg) :
     input(lmp->input), narg_before(input->narg), arg_before(input->arg), words(arg, arg + narg)

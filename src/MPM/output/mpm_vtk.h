@@ -28,10 +28,10 @@ class Input;
 
 namespace MPM_NS {
 
-/** One VTK XML file whose data are bytes in an appended section. The positions of the data are known when the
- *  header is written, so that the values may come in any order and in pieces. Compressed data have no such
- *  positions: each array must come in order, blocks are compressed as they come, and are kept in memory until
- *  the end. */
+/** One VTK XML file whose data are bytes in an appended section. The positions of the data are
+ *  known when the header is written, so that the values may come in any order and in pieces.
+ *  Compressed data have no such positions: each array must come in order, blocks are compressed as
+ *  they come, and are kept in memory until the end. */
 class VTKFile {
  public:
   enum Type { INT64, UINT8, FLOAT64, FLOAT32 };
@@ -42,16 +42,16 @@ class VTKFile {
   {
   }
 
-  /** Was this code compiled with zlib? */
   static bool can_compress();
 
-  /** Describes what is wrong with the name of a dump file and how to correct it; empty if nothing is wrong.
-   *  series: one file per snapshot, with a * for the time step; pieces: a % for the number of a piece is
-   *  allowed. */
+  /** Describes what is wrong with the name of a dump file and how to correct it; empty if nothing
+   *  is wrong. series: one file per snapshot, with a * for the time step; pieces: a % for the
+   *  number of a piece is allowed. */
   static std::string name_error(const std::string &name, const std::string &extension, bool series,
                                 bool pieces = false);
 
-  /** The name without the % for the number of a piece, and without the dot or other separator before it. */
+  /** The name without the % for the number of a piece, and without the dot or other separator
+   *  before it. */
   static std::string without_percent(const std::string &name);
 
   /** Adds an array of ntuple tuples to a section (PointData, Points, Verts, Cells), and returns its
@@ -59,15 +59,14 @@ class VTKFile {
   int add(const std::string &section, const std::string &name, Type type, int ncomponent,
           int64_t ntuple);
 
-  /** Writes everything except for the values. piece: attributes of the piece, such as NumberOfPoints="8";
-   *  units: name of the units of all values. */
+  /** Writes everything except for the values. piece: attributes of the piece, such as
+   *  NumberOfPoints="8"; units: name of the units of all values. */
   void begin(FILE *fp, const std::string &piece, const std::string &units, double time,
              int64_t step);
 
   /** Writes n tuples of an array from tuple first on, converted to the type of the array. */
   void write(int array, int64_t first, int64_t n, const double *values);
 
-  /** Call after all values. */
   void end();
 
   /** Text of the file that lists pieces with these arrays; names: files of the pieces. */
@@ -96,19 +95,21 @@ class VTKFile {
   void pack(Array &);
 };
 
-/** ParaView's list of the files of a series with their times (.pvd). The list is valid after each step. */
+/** ParaView's list of the files of a series with their times (.pvd). The list is valid after each
+ *  step. */
 class VTKCollection {
  public:
-  /** Name of the list for files name.*.ext: name.pvd, or fallback.pvd if no name is left. suffix: goes before
-   *  .pvd, for lists of different files with the same name. */
+  /** Name of the list for files name.*.ext: name.pvd, or fallback.pvd if no name is left. suffix:
+   *  goes before .pvd, for lists of different files with the same name. */
   static std::string list_name(const std::string &pattern, const std::string &fallback,
                                const std::string &suffix = "");
 
   explicit VTKCollection(const std::string &list) : list(list) {}
 
-  /** Adds a file (path as opened, in the directory of the list) and writes the list. Only the last keep
-   *  entries stay (0 or less: all). A file that is already listed gets the new time. append: continue a list
-   *  that exists before the first call. Returns the text of an error, or an empty text. */
+  /** Adds a file (path as opened, in the directory of the list) and writes the list. Only the last
+   *  keep entries stay (0 or less: all). A file that is already listed gets the new time. append:
+   *  continue a list that exists before the first call. Returns the text of an error, or an empty
+   *  text. */
   std::string add(const std::string &file, double time, int keep, bool append);
 
  private:
@@ -123,10 +124,10 @@ class VTKCollection {
   void read();
 };
 
-/** While this object exists, errors of LAMMPS that point to a word of the command point to a word of this
- *  command, and not of the one in the input. LAMMPS takes the word from the input without checking the number
- *  of words, and write_dump, an internal compute, and an internal list of columns have more words than
- *  that. */
+/** While this object exists, errors of LAMMPS that point to a word of the command point to a word
+ *  of this command, and not of the one in the input. LAMMPS takes the word from the input without
+ *  checking the number of words, and write_dump, an internal compute, and an internal list of
+ *  columns have more words than that. */
 class ErrorWords {
  public:
   /** arg: the narg words of this command. */
@@ -149,7 +150,8 @@ namespace LAMMPS_NS {
 /** Reads compress yes|no of dump_modify. Returns 2, or 0 for any other keyword. */
 int read_compress(LAMMPS *, int narg, char **arg, bool &compress);
 
-/** Common part of the dump styles that write VTK files, whichever dump of LAMMPS they derive from. */
+/** Common part of the dump styles that write VTK files, whichever dump of LAMMPS they derive
+ *  from. */
 template <class Base> class DumpVTKSeries : public Base {
  protected:
   bool single = false;      // precision of reals
@@ -158,8 +160,8 @@ template <class Base> class DumpVTKSeries : public Base {
 
   using Base::Base;
 
-  /** Call at the end of the constructor. The dump gathers rows of numbers, not text, and adds its files to a
-   *  list. */
+  /** Call at the end of the constructor. The dump gathers rows of numbers, not text, and adds its
+   *  files to a list. */
   void begin_series(const std::string &suffix = "")
   {
     this->buffer_allow = this->buffer_flag = 0;

@@ -41,9 +41,7 @@ struct Table {
  *  file. */
 Table read_table(const std::string &file, const std::string &columns);
 
-// readers by format; text: the whole file, name: name of the file for messages
-Table read_csv(const std::string &text, const std::string &columns, const std::string &name);
-Table read_xyz(const std::string &text, const std::string &columns, const std::string &name);
+/** The reader of VTK files; text: the whole file, name: name of the file for messages. */
 Table read_vtk_points(const std::string &text, const std::string &name);
 
 }    // namespace MPM_NS

@@ -41,7 +41,6 @@ class VtkXml {
   Tag element(const std::string &head, std::size_t from) const;
   /** Value of an attribute of a tag; empty if there is none. */
   std::string attribute(const Tag &, const std::string &key) const;
-  /** End of the XML part. */
   std::size_t end() const;
 
   /** To be called before arrays are read: checks byte order and compression, and finds the start of
@@ -50,7 +49,6 @@ class VtkXml {
   /** Number of points, cells, ... of the piece: the value of its attribute key. */
   uint64_t count(const Tag &piece, const std::string &key) const;
 
-  /** An array of tuples. */
   struct Array {
     std::string name;
     int width;    ///< components of a tuple

@@ -158,9 +158,10 @@ template <int DIM> struct PointDomain {
     for (int k = 0; k < 3; k++) sum[k] = first[k] + second[k];
   }
 
-  /** The map is x = .. + a xi + b eta + c zeta + d eta zeta + e zeta xi + f xi eta + g xi eta zeta. Along
-   *  axis k, J grad M_c = sum_k M_c,k (x,k+1 x x,k+2) with the columns x,k of the map's gradient, and J is
-   *  their triple product. Odd powers of a coordinate have no mean, even ones 1/3. */
+  /** The map is x = .. + a xi + b eta + c zeta + d eta zeta + e zeta xi + f xi eta + g xi eta zeta.
+   *  Along axis k, J grad M_c = sum_k M_c,k (x,k+1 x x,k+2) with the columns x,k of the map's
+   *  gradient, and J is their triple product. Odd powers of a coordinate have no mean, even ones
+   *  1/3. */
   template <class T> [[gnu::always_inline]] static T hexahedron(const T *x, T *w, T *grad)
   {
     // coefficients of 1, xi, eta, xi eta, zeta, xi zeta, ...: bits of the number are the powers

@@ -9,18 +9,18 @@
 #ifndef MPM_TRANSFER_ISA_H
 #define MPM_TRANSFER_ISA_H
 
-// Which instruction set runs. The files *_isa.cpp are compiled once for each set with MPM_ISA = base,
-// v3 or v4, the levels of x86-64; MPM_HAVE_V3 and MPM_HAVE_V4 tell which the build has. A file provides
-// a function under a name that ends with the set: define it as MPM_OF_ISA(name), and declare and call
-// those of all sets with MPM_DECLARE_ISA and MPM_ALL_ISA.
+// Which instruction set runs. The files *_isa.cpp are compiled once for each set with MPM_ISA =
+// base, v3 or v4, the levels of x86-64; MPM_HAVE_V3 and MPM_HAVE_V4 tell which the build has. A
+// file provides a function under a name that ends with the set: define it as MPM_OF_ISA(name), and
+// declare and call those of all sets with MPM_DECLARE_ISA and MPM_ALL_ISA.
 
 namespace MPM_NS {
 
 enum InstructionSet { BASE, V3, V4, REFERENCE };
 
-/** Selects the instruction set with this name: reference, baseline, avx2, avx512. Without a name, the
- *  environment variable MPM_ISA gives it; without both, it is the best set that runs here. Returns false
- *  for an unknown name, and for a set that was not built or that the CPU lacks. */
+/** Selects the instruction set with this name: reference, baseline, avx2, avx512. Without a name,
+ *  the environment variable MPM_ISA gives it; without both, it is the best set that runs here.
+ *  Returns false for an unknown name, and for a set that was not built or that the CPU lacks. */
 bool select_isa(const char *name, InstructionSet &set);
 
 }    // namespace MPM_NS
@@ -50,8 +50,8 @@ bool select_isa(const char *name, InstructionSet &set);
   result name##_base(__VA_ARGS__);         \
   result name##_v3(__VA_ARGS__);           \
   result name##_v4(__VA_ARGS__);
-/** Pointers to them, by InstructionSet; null for a set that was not built, and name_base in the place of
- *  plain loops. */
+/** Pointers to them, by InstructionSet; null for a set that was not built, and name_base in the
+ *  place of plain loops. */
 // clang-format off
 #define MPM_ALL_ISA(name) \
   {MPM_IF_BASE(name##_base), MPM_IF_V3(name##_v3), MPM_IF_V4(name##_v4), MPM_IF_BASE(name##_base)}

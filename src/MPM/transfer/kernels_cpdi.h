@@ -49,36 +49,14 @@ struct TileFrame {
   }
 };
 
-/** Four numbers of each of the points side by side to rows of four. */
-template <int N> MPM_INLINE void transpose(Vec<N> a, Vec<N> b, Vec<N> c, Vec<N> d, double (*row)[4])
-{
-  if constexpr (N == 2) {
-    for (int l = 0; l < 2; l++) quad(a.lane(l), b.lane(l), c.lane(l), d.lane(l)).store(row[l]);
-  } else {
-    const auto ab0 = shuffle<0, 4, 2, 6>(a, b), ab1 = shuffle<1, 5, 3, 7>(a, b);
-    const auto cd0 = shuffle<0, 4, 2, 6>(c, d), cd1 = shuffle<1, 5, 3, 7>(c, d);
-    const Vec<N> rows[4] = {shuffle<0, 1, 4, 5>(ab0, cd0), shuffle<0, 1, 4, 5>(ab1, cd1),
-                            shuffle<2, 3, 6, 7>(ab0, cd0), shuffle<2, 3, 6, 7>(ab1, cd1)};
-    MPM_UNROLL
-    for (int l = 0; l < 4; l++) {
-      if constexpr (N == 4) {
-        rows[l].store(row[l]);
-      } else {
-        half<0>(rows[l]).store(row[l]);
-        half<1>(rows[l]).store(row[l + 4]);
-      }
-    }
-  }
-}
-
 /** a, but 0 where the flag is set. */
 MPM_INLINE Vec<REGISTER> unless(Vec<REGISTER> flag, Vec<REGISTER> a)
 {
   return {flag.r == 0.0 ? a.r : Vec<REGISTER>{}.r};
 }
 
-/** The domains of up to GROUP points; [.][point]. STENCIL: also what Stencil needs; MOMENT: what the fit of
- *  an affine field needs. */
+/** The domains of up to GROUP points; [.][point]. STENCIL: also what Stencil needs; MOMENT: what
+ *  the fit of an affine field needs. */
 template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
   using V = Vec<REGISTER>;
   using Domain = PointDomain<DIM>;
@@ -93,15 +71,15 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
   int corner[N][GROUP];                     ///< base node of the corner, index in the tile
   alignas(64) double low[DIM][GROUP], high[DIM][GROUP];    ///< extreme base nodes of corners
 
-  // Stencil: its first node, index of that in the tile, index of base nodes of corners in it; weights of
-  // nodes along the last axis, and their products along the others
+  // Stencil: its first node, index of that in the tile, index of base nodes of corners in it;
+  // weights of nodes along the last axis, and their products along the others
   alignas(64) double start[DIM][GROUP];
   int place_of_start[GROUP], number[N][GROUP];
   alignas(64) double line[N][2][GROUP], plane[N][N / 2][GROUP];
   alignas(64) double wide[GROUP];    ///< 1: a corner reaches other nodes
 
-  // Moment: base nodes of corners relative to the center, and the inverse of the second moment of the
-  // weights, in node spacings
+  // Moment: base nodes of corners relative to the center, and the inverse of the second moment of
+  // the weights, in node spacings
   static constexpr int OFFSETS = MOMENT ? N * DIM : 1, MOMENTS = MOMENT ? Domain::symmetric : 1;
   alignas(64) double offset[OFFSETS][GROUP], inverse[MOMENTS][GROUP];
 
@@ -156,8 +134,8 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
       bad = flag_outside(bad, size, 1.0e300);
       MPM_UNROLL
       for (int k = 0; k < N; k++)
-        transpose(w[k], g[DIM * k], g[DIM * k + 1], DIM == 3 ? g[DIM * k + DIM - 1] : V{},
-                  wg[k] + l);
+        store_as_rows<REGISTER>(
+            {w[k], g[DIM * k], g[DIM * k + 1], DIM == 3 ? g[DIM * k + DIM - 1] : V{}}, wg[k][l]);
       locate(l, frame);
       if constexpr (MOMENT) find_moment(l, w, frame.inv_h);
     }
@@ -167,8 +145,8 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
   }
 
  private:
-  /** The moment D = sum_c w_c (x_c x_c^T + diag of f (1 - f)): that of linear functions about the corner x_c
-   *  is f (1 - f) with its place f in the cell. */
+  /** The moment D = sum_c w_c (x_c x_c^T + diag of f (1 - f)): that of linear functions about the
+   *  corner x_c is f (1 - f) with its place f in the cell. */
   MPM_INLINE void find_moment(int l, const V *w, double inv_h)
   {
     V D[Domain::symmetric], inv[Domain::symmetric];
@@ -254,8 +232,8 @@ template <int DIM, Shape SHAPE, bool STENCIL, bool MOMENT> struct Domains {
   }
 };
 
-/** Adds w_n (q + i A_x + j A_y + k A_z) to the nodes n of a cell, i, j, k = 0, 1; fractions are a group
- *  apart. */
+/** Adds w_n (q + i A_x + j A_y + k A_z) to the nodes n of a cell, i, j, k = 0, 1; fractions are a
+ *  group apart. */
 template <int DIM, bool AFFINE, int NREAL, int WIDTH>
 MPM_INLINE void add_to_cell(double *node, const double *fraction, Vec<WIDTH> q, const Vec<WIDTH> *A)
 {
@@ -284,7 +262,8 @@ MPM_INLINE void add_to_cell(double *node, const double *fraction, Vec<WIDTH> q, 
   }
 }
 
-/** Interpolation between the nodes of a cell; fractions are a group apart. FACES: also on its upper faces. */
+/** Interpolation between the nodes of a cell; fractions are a group apart. FACES: also on its upper
+ *  faces. */
 template <int DIM, int NREAL, bool FACES, int WIDTH>
 MPM_INLINE Vec<WIDTH> in_cell(const double *node, const double *fraction, Vec<WIDTH> *face)
 {
@@ -319,8 +298,9 @@ MPM_INLINE Vec<WIDTH> in_cell(const double *node, const double *fraction, Vec<WI
 }
 
 /** Weights W and gradients G of a domain that reaches at most three nodes along each axis, at these
- *  nodes: what corners have in common is added up before it goes to the tile. A row of nodes along the last
- *  axis is two cells of two nodes: CPUs are slow to load what was just stored in two pieces. */
+ *  nodes: what corners have in common is added up before it goes to the tile. A row of nodes along
+ *  the last axis is two cells of two nodes: CPUs are slow to load what was just stored in two
+ *  pieces. */
 template <int DIM> struct Stencil {
   static constexpr int ROWS = DIM == 3 ? 9 : 3;
   alignas(64) double real[ROWS][16];    ///< [row][8 * cell + 4 * node + (W, G_x, G_y, G_z)]
@@ -346,7 +326,8 @@ template <int DIM> struct Stencil {
     }
   }
 
-  /** To the nodes from the lowest on: W (q + i A_x + j A_y + k A_z) + G_x S_x + G_y S_y + G_z S_z. */
+  /** To the nodes from the lowest on: W (q + i A_x + j A_y + k A_z) + G_x S_x + G_y S_y + G_z
+   *  S_z. */
   template <bool AFFINE, bool GRADIENT, int NREAL, int WIDTH>
   MPM_INLINE void scatter(double *lowest, Vec<WIDTH> q, const Vec<WIDTH> *A, const Vec<WIDTH> *S)
   {

@@ -9,13 +9,13 @@
 #ifndef MPM_TRANSFER_KERNELS_FAST_H
 #define MPM_TRANSFER_KERNELS_FAST_H
 
-// The fast transfers as templates, for the files that the build writes, each of which makes those of
-// a shape, once for each instruction set with MPM_ISA = base, v3 or v4 (x86-64
-// levels). Nothing but their tables may be visible outside, see transfer/vector.h.
+// The fast transfers as templates, for the files that the build writes, each of which makes those
+// of a shape, once for each instruction set with MPM_ISA = base, v3 or v4 (x86-64 levels). Nothing
+// but their tables may be visible outside, see transfer/vector.h.
 //
-// What a transfer does is written plainly in transfer/kernels_reference.cpp; this file does the same
-// in fewer operations:
-//  - A point's contribution to a node is a product over axes, plus one term per axis (affine part
+// What a transfer does is written plainly in transfer/kernels_reference.cpp; this file does the
+// same in fewer operations: - A point's contribution to a node is a product over axes, plus one
+// term per axis (affine part
 //    or stress gradient). Summed axis by axis this costs two multiply-adds per node and vector,
 //    see Scatter. The way back sums z rows first, then y, then x, see Gather.
 //  - Vectors hold the four reals of a node (x, y, z, mass), for one or two points side by side.
@@ -103,8 +103,9 @@ template <int DIM, Shape SHAPE, int L> struct Frame {
   /** Position in units of h from tile node 0, less the shift: its whole part is the base node. */
   MPM_INLINE Quads<L> position(Quads<L> x) const { return (x - origin) * inv_h - low; }
 
-  /** The same for a point that is known to be in the tile. With cells of several nodes, rounding may put a
-   *  point at the low side of its block into the previous cell, whose first node is not in the tile. */
+  /** The same for a point that is known to be in the tile. With cells of several nodes, rounding
+   *  may put a point at the low side of its block into the previous cell, whose first node is not
+   *  in the tile. */
   MPM_INLINE Quads<L> position_inside(Quads<L> x) const
   {
     if constexpr (CELL == 1)
@@ -175,9 +176,9 @@ __attribute__((noinline)) void copy_reals(double *to, const double *from, Index 
   for (Index i = 0; i < n; i++) to[i] = from[i];
 }
 
-/** Copies of the last points of a range, with room behind the rows, because vectors of four reals read and
- *  write past a row of three or nine. Points are added up to a whole vector; they are copies of the first
- *  one, with some rows set to zero. */
+/** Copies of the last points of a range, with room behind the rows, because vectors of four reals
+ *  read and write past a row of three or nine. Points are added up to a whole vector; they are
+ *  copies of the first one, with some rows set to zero. */
 struct LastPoints {
   static constexpr int ROOM = POINTS + 1;
   double x[3 * ROOM], v[3 * ROOM], f[3 * ROOM], C[9 * ROOM], tau[6 * ROOM], vol0[ROOM], mass[ROOM],
@@ -338,8 +339,8 @@ template <int DIM, int ORDER, int WIDTH, int L, bool AFFINE, bool GRADIENT> stru
   }
 };
 
-/** P2G of the quantities PARTS. AFFINE: uses C. MLS: stress as an affine term. Each of these two is false
- *  where it makes no difference, see PointsToNodesOf. */
+/** P2G of the quantities PARTS. AFFINE: uses C. MLS: stress as an affine term. Each of these two is
+ *  false where it makes no difference, see PointsToNodesOf. */
 template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS> struct PointsToNodes {
   static constexpr int ORDER = FunctionOf<SHAPE>::order;
   static constexpr bool momentum = PARTS & MOMENTUM;
@@ -410,8 +411,8 @@ template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS> str
     if constexpr (AFFINE) matrix_columns<L>(points.C, p, h * mass, A);
   }
 
-  /** Force times scale: external, and columns of -stress that an affine or gradient term takes; total: of
-   *  the first Piola-Kirchhoff instead of the Kirchhoff stress. */
+  /** Force times scale: external, and columns of -stress that an affine or gradient term takes;
+   *  total: of the first Piola-Kirchhoff instead of the Kirchhoff stress. */
   template <int L>
   static MPM_INLINE void force_terms(const PointRows &points, Index p, const TransferStep &step,
                                      bool total, double scale, Quads<L> &q, Quads<L> *A)
@@ -567,7 +568,8 @@ template <int DIM, Shape SHAPE, bool AFFINE, bool MLS, int NREAL, int PARTS> str
       }
   }
 
-  /** The last points, which are no whole vector or have no memory behind them, through padded copies. */
+  /** The last points, which are no whole vector or have no memory behind them, through padded
+   *  copies. */
   static __attribute__((noinline)) void end(const PointRows &points, const TransferStep &step,
                                             bool total, Index rest, Index last, const int *base,
                                             double *tile, int *box)
@@ -902,7 +904,8 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> struct NodesToPoin
     return left;
   }
 
-  /** The last points, which are no whole vector or have no memory behind them, through padded copies. */
+  /** The last points, which are no whole vector or have no memory behind them, through padded
+   *  copies. */
   template <bool UPDATE, bool GRADIENT>
   static __attribute__((noinline)) int end(const PointRows &points, const TransferStep &step,
                                            bool total, Index rest, Index last, const int *base,
@@ -964,33 +967,40 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL> struct NodesToPoin
 
 enum TileMove { FLUSH, LOAD, LOAD_MEAN, PREFETCH };
 
-/** Adds N reals of a tile to nodes and clears them, loads them or, of each eight, the mean of both fours into
- *  the first, or brings the nodes near. */
-template <int N, TileMove MOVE> MPM_INLINE void move_reals(double *tile, double *nodes)
+/** Adds N reals of a tile to nodes and clears them, loads them or, of each eight, the mean of both
+ *  fours into the first, or brings the nodes near. Goes on with half the WIDTH for the rest. */
+template <int N, TileMove MOVE, int WIDTH = 4>
+MPM_INLINE void move_reals(double *tile, double *nodes)
 {
   if constexpr (MOVE == PREFETCH) {
     // to the second-level cache: the first has no room for another tile yet
     constexpr int line = 8;
     MPM_UNROLL
     for (int i = 0; i < N; i += line) __builtin_prefetch(nodes + i, 1, 2);
-    return;
-  }
-  MPM_UNROLL
-  for (int i = 0; i < N; i += MOVE == LOAD_MEAN ? 8 : 4) {
-    if constexpr (MOVE == LOAD_MEAN) {
-      (0.5 * (Vec<4>::load(nodes + i) + Vec<4>::load(nodes + i + 4))).store(tile + i);
-    } else if constexpr (MOVE == LOAD) {
-      Vec<4>::load(nodes + i).store(tile + i);
-    } else {
-      (Vec<4>::load(nodes + i) + Vec<4>::load(tile + i)).store(nodes + i);
-      Vec<4>{}.store(tile + i);
+  } else if constexpr (WIDTH == 1) {
+    if (MOVE == FLUSH) *nodes += *tile;
+    *tile = MOVE == FLUSH ? 0.0 : *nodes;
+  } else {
+    using V = Vec<WIDTH>;
+    MPM_UNROLL
+    for (int i = 0; i + WIDTH <= N; i += MOVE == LOAD_MEAN ? 8 : WIDTH) {
+      if constexpr (MOVE == LOAD_MEAN) {
+        (0.5 * (V::load(nodes + i) + V::load(nodes + i + 4))).store(tile + i);
+      } else if constexpr (MOVE == LOAD) {
+        V::load(nodes + i).store(tile + i);
+      } else {
+        (V::load(nodes + i) + V::load(tile + i)).store(nodes + i);
+        V{}.store(tile + i);
+      }
     }
+    constexpr int done = N / WIDTH * WIDTH;
+    if constexpr (done < N) move_reals<N - done, MOVE, WIDTH / 2>(tile + done, nodes + done);
   }
 }
 
-/** Flush, load or prefetch, a row of nodes along the last axis at a time. A row has one node in the block
- *  before, all of its own block and ORDER + 1 nodes in the block after; with domains it has all nodes of
- *  the three blocks. Each of these parts is moved whole if the box touches it. */
+/** Flush, load or prefetch, a row of nodes along the last axis at a time. A row has one node in the
+ *  block before, all of its own block and ORDER + 1 nodes in the block after; with domains it has
+ *  all nodes of the three blocks. Each of these parts is moved whole if the box touches it. */
 template <int DIM, Shape SHAPE, int NREAL, TileMove MOVE>
 void tile_io(double *tile, double *nodes, const int slot[27], const int box[6])
 {

@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Compiled once for each instruction set: table of kernels of the set, and solve. The transfers of each
-// shape are made in files of their own, so that they compile side by side.
+// Compiled once for each instruction set: table of kernels of the set, and solve. The transfers of
+// each shape are made in files of their own, so that they compile side by side.
 
 #include "transfer/kernels_isa.h"
 

@@ -9,8 +9,8 @@
 #ifndef MPM_TRANSFER_KERNELS_ISA_H
 #define MPM_TRANSFER_KERNELS_ISA_H
 
-// Selects the combination of constants that kernels are compiled for from the choice of a user, for all
-// files of kernels, plain and fast.
+// Selects the combination of constants that kernels are compiled for from the choice of a user, for
+// all files of kernels, plain and fast.
 
 #include "transfer/isa.h"
 #include "transfer/kernels.h"
@@ -21,8 +21,8 @@
 #define MPM_ISA base
 #endif
 
-// The vector extensions of transfer/vector.h: without them the plain loops serve, and the other files are
-// empty.
+// The vector extensions of transfer/vector.h: without them the plain loops serve, and the other
+// files are empty.
 #if defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
 #define MPM_HAVE_VECTORS

@@ -15,7 +15,8 @@
 
 namespace {
 
-/** What is the same for all points, and no constant: that would be four times as much to compile. */
+/** What is the same for all points, and no constant: that would be four times as much to
+ *  compile. */
 struct Way {
   int parts, nreal;
   bool affine, mls, gradient, increment, total;
@@ -100,10 +101,10 @@ void velocity_gradient(const Way &way, const Stencil<DIM, SHAPE> &stencil, const
   }
 }
 
-/** A = B D^-1 with B = sum_i N_ip v_i (x_i - x_p)^T, D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T: of all
- *  affine fields the one nearest to the nodes' velocities, so that no field gains energy on its way from
- *  the nodes to the points and back, and angular momentum is conserved (C. Jiang et al., ACM Trans.
- *  Graph. 34(4) (2015) 51). */
+/** A = B D^-1 with B = sum_i N_ip v_i (x_i - x_p)^T, D = sum_i N_ip (x_i - x_p) (x_i - x_p)^T: of
+ *  all affine fields the one nearest to the nodes' velocities, so that no field gains energy on its
+ *  way from the nodes to the points and back, and angular momentum is conserved (C. Jiang et al.,
+ *  ACM Trans. Graph. 34(4) (2015) 51). */
 template <int DIM, Shape SHAPE>
 void affine_fit(const Way &way, const Stencil<DIM, SHAPE> &stencil, const double *tile, double *A)
 {
@@ -202,7 +203,8 @@ int g2p(const PointRows &points, const TransferStep &step, int first, int last, 
   return gather<C::dim, C::shape>(way_of<C>(), UPDATE, points, step, first, last, base, tile, L);
 }
 
-/** The shape of mode m of polypic: the product of the coordinates whose bits are set in xy, xz, yz, xyz. */
+/** The shape of mode m of polypic: the product of the coordinates whose bits are set in xy, xz, yz,
+ *  xyz. */
 double mode(const Node &node, int m)
 {
   constexpr int bits[4] = {3, 5, 6, 7};

@@ -8,8 +8,9 @@
 
 // Transfers of one number, see ScalarKernels; compiled once for each instruction set.
 //
-// To nodes, a vector holds up to four nodes along the last axis. To points, it holds points in a row that share their first node,
-// and each node is a number for all of them: as many instructions for four or eight points as for one.
+// To nodes, a vector holds up to four nodes along the last axis. To points, it holds points in a
+// row that share their first node, and each node is a number for all of them: as many instructions
+// for four or eight points as for one.
 
 #include "transfer/kernels_isa.h"
 #include "transfer/scalar.h"
@@ -33,18 +34,6 @@ namespace {
 
 using V = Vec<4>;
 
-/** Transposes four vectors. */
-MPM_INLINE void transpose(V *a)
-{
-  const V low = shuffle<0, 4, 2, 6>(a[0], a[1]);     // 00 10 02 12
-  const V high = shuffle<1, 5, 3, 7>(a[0], a[1]);    // 01 11 03 13
-  const V low2 = shuffle<0, 4, 2, 6>(a[2], a[3]), high2 = shuffle<1, 5, 3, 7>(a[2], a[3]);
-  a[0] = shuffle<0, 1, 4, 5>(low, low2);
-  a[1] = shuffle<0, 1, 4, 5>(high, high2);
-  a[2] = shuffle<2, 3, 6, 7>(low, low2);
-  a[3] = shuffle<2, 3, 6, 7>(high, high2);
-}
-
 /** Brings rows of three reals of four points into the cache, which may not exist. */
 MPM_INLINE void prefetch_points(const double *rows, Index p)
 {
@@ -53,8 +42,8 @@ MPM_INLINE void prefetch_points(const double *rows, Index p)
   __builtin_prefetch(reinterpret_cast<const void *>(start + 64));
 }
 
-/** Three reals of rows of four points from the given one on, axis by axis. Behind the last point there are others like it,
- *  and there may be no memory behind the last row. */
+/** Three reals of rows of four points from the given one on, axis by axis. Behind the last point
+ *  there are others like it, and there may be no memory behind the last row. */
 MPM_INLINE void load_points(const double *rows, Index p, Index n, Index guarded, V *axis)
 {
   if (p + 4 <= n && p + 4 <= guarded) {
@@ -71,9 +60,10 @@ MPM_INLINE void load_points(const double *rows, Index p, Index n, Index guarded,
   transpose(axis);
 }
 
-/** Node MIDDLE along an axis, whose weight is never small, has what the others leave: weights sum to one, and slopes
- *  to zero. Points that share their nodes then have one node less, and the gradient of a constant is exactly zero. Linear functions
- *  and Bernstein polynomials have no such node. */
+/** Node MIDDLE along an axis, whose weight is never small, has what the others leave: weights sum
+ *  to one, and slopes to zero. Points that share their nodes then have one node less, and the
+ *  gradient of a constant is exactly zero. Linear functions and Bernstein polynomials have no such
+ *  node. */
 constexpr int MIDDLE = 1;
 template <Shape SHAPE>
 constexpr bool has_middle = SHAPE == QUADRATIC || SHAPE == CUBIC || SHAPE == GIMP;
@@ -81,7 +71,8 @@ constexpr bool has_middle = SHAPE == QUADRATIC || SHAPE == CUBIC || SHAPE == GIM
 /** Weights of all points at a node along an axis. */
 using Columns = double (*)[BATCH + SPARE_ROWS];
 
-/** Stores the weights of four points along an axis; LESS: none of node MIDDLE but in the rows of the last one. */
+/** Stores the weights of four points along an axis; LESS: none of node MIDDLE but in the rows of
+ *  the last one. */
 template <int N, bool LAST, bool LESS>
 MPM_INLINE void store_weights(const V *weight, Index p, double (*rows)[4], Columns columns)
 {
@@ -212,8 +203,9 @@ void prepare(const PointRows &rows, const TransferStep &step, int n, const int b
     prepare_box<DIM, SHAPE, false>(rows, step, n, base, kind, out, box);
 }
 
-/** The rows of nodes of points that share the first one. Lanes without a node hold whatever follows in the tile.
- *  LESS: along the axes but the last one, nodes count as their difference from MIDDLE. */
+/** The rows of nodes of points that share the first one. Lanes without a node hold whatever follows
+ *  in the tile. LESS: along the axes but the last one, nodes count as their difference from
+ *  MIDDLE. */
 template <int DIM, Shape SHAPE, bool LESS> struct NodeRows {
   static constexpr int N = FunctionOf<SHAPE>::nodes, M = DIM == 3 ? N : 1, LAST = DIM - 1;
   static constexpr int sx = stride<DIM, SHAPE>(0), sy = DIM == 3 ? stride<DIM, SHAPE>(1) : 0;
@@ -381,8 +373,8 @@ void add_values(const ScalarStencil &in, const double *q, double *tile)
   });
 }
 
-/** Points in a vector, for a given number that is left: those that there are not have weights of other points, and anything comes
- *  out of them. */
+/** Points in a vector, for a given number that is left: those that there are not have weights of
+ *  other points, and anything comes out of them. */
 template <int LANES, class F> MPM_INLINE void visit_lanes(int first, int last, const F &f)
 {
   if constexpr (LANES > 4) {
@@ -392,7 +384,8 @@ template <int LANES, class F> MPM_INLINE void visit_lanes(int first, int last, c
 }
 constexpr int LANES = REGISTER > 4 ? REGISTER : 4;
 
-/** The nodes of points that share the first one, one by one; LESS: along all axes as their difference from MIDDLE. */
+/** The nodes of points that share the first one, one by one; LESS: along all axes as their
+ *  difference from MIDDLE. */
 template <int DIM, Shape SHAPE, bool LESS> struct NodeNumbers {
   using Rows = NodeRows<DIM, SHAPE, LESS>;
   static constexpr int N = Rows::N, M = Rows::M;
@@ -440,7 +433,8 @@ MPM_INLINE void get_points(const NodeNumbers<DIM, SHAPE, LESS> &nodes, const Sca
   using Rows = typename Numbers::Rows;
   using W = Vec<L>;
   constexpr int N = Numbers::N, M = Numbers::M, LAST = DIM - 1;
-  // barrier: numbers are operands in memory, otherwise GCC has each of them in all lanes of a register, and spills
+  // barrier: numbers are operands in memory, otherwise GCC has each of them in all lanes of a
+  // register, and spills
   asm volatile("" : : "r"(nodes.number) : "memory");
   value = slope[0] = slope[1] = slope[2] = W{};
   MPM_UNROLL
@@ -486,13 +480,14 @@ MPM_INLINE void get_points(const NodeNumbers<DIM, SHAPE, LESS> &nodes, const Sca
   }
 }
 
-/** Points that share their nodes, where these are less than this number, are done one by one: what it takes to have nodes as numbers is
- *  for all of them. */
+/** Points that share their nodes, where these are less than this number, are done one by one: what
+ *  it takes to have nodes as numbers is for all of them. */
 constexpr int FEW = 3;
 
-/** Calls many(nodes, p, lanes) for points that share their nodes, several at a time, and few(first, last) for those that are too
- *  few for that, in the order of points: the lanes behind the last point of many() are of those that come next. The nodes of some
- *  groups of points come first, as those of a group would have to be waited for. */
+/** Calls many(nodes, p, lanes) for points that share their nodes, several at a time, and few(first,
+ *  last) for those that are too few for that, in the order of points: the lanes behind the last
+ *  point of many() are of those that come next. The nodes of some groups of points come first, as
+ *  those of a group would have to be waited for. */
 template <int DIM, Shape SHAPE, bool LESS, class Many, class Few>
 MPM_INLINE void visit_groups(const ScalarStencil &in, const double *tile, const Many &many,
                              const Few &few)
@@ -574,22 +569,7 @@ void get_rows(const ScalarStencil &in, const double *tile, double *q)
     constexpr int L = decltype(lanes)::value;
     Vec<L> value, slope[3];
     get_points<DIM, SHAPE, LESS, true>(nodes, in, p, value, slope);
-    // in each four points, rows instead of columns
-    const Vec<L> xy = shuffle<0, 4, 2, 6>(slope[0], slope[1]),
-                 zv = shuffle<0, 4, 2, 6>(slope[2], value),
-                 xy2 = shuffle<1, 5, 3, 7>(slope[0], slope[1]),
-                 zv2 = shuffle<1, 5, 3, 7>(slope[2], value);
-    const Vec<L> row[4] = {shuffle<0, 1, 4, 5>(xy, zv), shuffle<0, 1, 4, 5>(xy2, zv2),
-                           shuffle<2, 3, 6, 7>(xy, zv), shuffle<2, 3, 6, 7>(xy2, zv2)};
-    MPM_UNROLL
-    for (int k = 0; k < 4; k++) {
-      if constexpr (L == 4) {
-        row[k].store(q + 4 * (p + k));
-      } else {
-        half<0>(row[k]).store(q + 4 * (p + k));
-        half<1>(row[k]).store(q + 4 * (p + k + 4));
-      }
-    }
+    store_as_rows<L>({slope[0], slope[1], slope[2], value}, q + 4 * p);
   };
   const auto few = [&](int first, int last) {
     get_rows_of_few<DIM, SHAPE, LESS>(in, tile, first, last, q);
@@ -676,46 +656,6 @@ void divide(double *sums, const double *weights, std::size_t n)
   for (; k < n; k++) sums[k] = weights[k] > 0.0 ? sums[k] / weights[k] : 0.0;
 }
 
-/** Adds a tile's reals to those of the nodes and clears them, or loads them. */
-template <int COUNT, bool FLUSHES> MPM_INLINE void move_some(double *mine, double *theirs)
-{
-  constexpr int SIZE = COUNT >= 4 ? 4 : COUNT >= 2 ? 2 : 1;
-  if constexpr (SIZE == 1) {
-    if (FLUSHES) *theirs += *mine;
-    *mine = FLUSHES ? 0.0 : *theirs;
-  } else if constexpr (FLUSHES) {
-    (Vec<SIZE>::load(theirs) + Vec<SIZE>::load(mine)).store(theirs);
-    Vec<SIZE>{}.store(mine);
-  } else {
-    Vec<SIZE>::load(theirs).store(mine);
-  }
-  if constexpr (COUNT > SIZE) move_some<COUNT - SIZE, FLUSHES>(mine + SIZE, theirs + SIZE);
-}
-
-/** As tile_io() of other transfers. */
-template <int DIM, Shape SHAPE, bool FLUSHES>
-void move_tile(double *tile, double *nodes, const int slot[27], const int box[6])
-{
-  constexpr int ORDER = stencil_order(SHAPE), side = block_side(DIM);
-  constexpr int sx = stride<DIM, SHAPE>(0), sy = stride<DIM, SHAPE>(1);
-  const int low = box[DIM - 1], high = box[3 + DIM - 1] + ORDER;
-  const int ylow = DIM == 3 ? box[1] : 0, yhigh = DIM == 3 ? box[4] + ORDER : 0;
-  for (int i = box[0]; i <= box[3] + ORDER; i++)
-    for (int j = ylow; j <= yhigh; j++) {
-      const int x = i + side - 1, y = j + side - 1;
-      double *const row = tile + (DIM == 3 ? i * sx + j * sy : i * sx);
-      const int *const block = slot + (DIM == 3 ? 9 * (x / side) + 3 * (y / side) : 9 * (x / side));
-      const int index = DIM == 3 ? (x % side * side + y % side) * side : x % side * side;
-      constexpr int next = DIM == 3 ? 1 : 3, middle = DIM == 3 ? 0 : 1;
-      const auto record = [&](int which, int node) {
-        return nodes + Index(64) * block[which * next + middle] + node;
-      };
-      if (low == 0) move_some<1, FLUSHES>(row, record(0, index + side - 1));
-      if (low <= side) move_some<side, FLUSHES>(row + 1, record(1, index));
-      if (high > side) move_some<ORDER + 1, FLUSHES>(row + side + 1, record(2, index));
-    }
-}
-
 }    // namespace
 
 ScalarKernels MPM_NS::MPM_OF_ISA(mpm_kernels_scalar)(int dim, Shape shape)
@@ -731,8 +671,8 @@ ScalarKernels MPM_NS::MPM_OF_ISA(mpm_kernels_scalar)(int dim, Shape shape)
                            add_values<DIM, SHAPE>,
                            get<DIM, SHAPE>,
                            get_values<DIM, SHAPE>,
-                           move_tile<DIM, SHAPE, true>,
-                           move_tile<DIM, SHAPE, false>,
+                           tile_io<DIM, SHAPE, 1, FLUSH>,
+                           tile_io<DIM, SHAPE, 1, LOAD>,
                            divide};
     });
   });

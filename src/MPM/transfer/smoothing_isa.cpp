@@ -6,7 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Sums and values of linear fits around nodes, see SmoothingKernels; compiled once for each instruction set.
+// Sums and values of linear fits around nodes, see SmoothingKernels; compiled once for each
+// instruction set.
 
 #include "transfer/kernels_isa.h"
 #include "transfer/smoothing.h"
@@ -57,8 +58,8 @@ MPM_INLINE V xyy(V a)
 template <int DIM, int ORDER> struct FitFrame {
   static constexpr int N = ORDER + 1, sx = tile_stride_x(DIM, ORDER),
                        sy = tile_stride_y(DIM, ORDER);
-  /** Node about which places are taken: of the order of half a tile, so that sums of their squares about a node keep
-   *  their digits. */
+  /** Node about which places are taken: of the order of half a tile, so that sums of their squares
+   *  about a node keep their digits. */
   static constexpr double middle = block_side(DIM) / 2 + 1,
                           from_middle = middle - BSpline<ORDER>::shift;
   V origin, inv_h, low;
@@ -76,8 +77,8 @@ template <int DIM, int ORDER> struct FitFrame {
     low = V::load(b);
   }
 
-  /** Weights w[node] of a point along the axes, in lanes; its base node in the tile, and its place x y z 1. Returns the
-   *  place from the first node, less the shift of the functions. */
+  /** Weights w[node] of a point along the axes, in lanes; its base node in the tile, and its place
+   *  x y z 1. Returns the place from the first node, less the shift of the functions. */
   MPM_INLINE V locate(const PointRows &points, int p, double (*w)[4], int *node, V &x) const
   {
     const double *const at = points.x + 3 * static_cast<std::ptrdiff_t>(p);
@@ -99,7 +100,8 @@ template <int DIM, int ORDER> struct FitFrame {
   }
 };
 
-/** A point ready to be added: its products, and the weights of rows of nodes along the last axis. */
+/** A point ready to be added: its products, and the weights of rows of nodes along the last
+ *  axis. */
 template <int DIM, int ORDER> struct FitPoint {
   static constexpr int N = ORDER + 1, NROW = DIM == 3 ? N * N : N, VECTORS = fit_width(DIM) / 4;
   alignas(32) double m[4 * VECTORS];
@@ -146,7 +148,8 @@ template <int DIM, int ORDER> struct FitPoint {
   }
 };
 
-/** Adds points with one base node; vectors [BEGIN,END) of the records, as many as there are registers for. */
+/** Adds points with one base node; vectors [BEGIN,END) of the records, as many as there are
+ *  registers for. */
 template <int DIM, int ORDER, int BEGIN, int END>
 MPM_INLINE void add_row(const FitPoint<DIM, ORDER> *point, int n, int row, double *at)
 {
@@ -246,8 +249,9 @@ void evaluate(const PointRows &rows, double *q, const TransferStep &step, int fi
   }
 }
 
-/** Calls f(place in the tile, record, distance from the middle) for the nodes that base nodes in the box reach;
- *  record: negative where the block is not active, as nothing in the tile is there. */
+/** Calls f(place in the tile, record, distance from the middle) for the nodes that base nodes in
+ *  the box reach; record: negative where the block is not active, as nothing in the tile is
+ *  there. */
 template <int DIM, int ORDER, class F>
 MPM_INLINE void visit_tile(const int *slot, const int *box, const F &f)
 {

@@ -9,8 +9,8 @@
 #ifndef MPM_TRANSFER_STENCIL_H
 #define MPM_TRANSFER_STENCIL_H
 
-// The nodes that a point reaches in plain loops, for transfers that are written that way: the statement of what the
-// fast ones do. All names are local to the including file.
+// The nodes that a point reaches in plain loops, for transfers that are written that way: the
+// statement of what the fast ones do. All names are local to the including file.
 
 #include "transfer/cpdi.h"
 #include "transfer/kernels_isa.h"
@@ -140,8 +140,8 @@ using Stencil =
 
 enum TileMove { FLUSH, LOAD, LOAD_MEAN };
 
-/** Adds the nodes of the box to the nodes of the blocks and clears them (FLUSH), loads them from there
- *  (LOAD), or loads the mean of their velocities (LOAD_MEAN). */
+/** Adds the nodes of the box to the nodes of the blocks and clears them (FLUSH), loads them from
+ *  there (LOAD), or loads the mean of their velocities (LOAD_MEAN). */
 template <int DIM, Shape SHAPE, int NREAL, TileMove MOVE>
 void move_box(double *tile, double *nodes, const int slot[27], const int box[6])
 {

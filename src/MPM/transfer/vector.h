@@ -9,8 +9,8 @@
 #ifndef MPM_TRANSFER_VECTOR_H
 #define MPM_TRANSFER_VECTOR_H
 
-// Short vectors of doubles on the vector extensions of GCC and Clang, for files that are compiled once
-// for each instruction set. All names are local to the including file, and every function is
+// Short vectors of doubles on the vector extensions of GCC and Clang, for files that are compiled
+// once for each instruction set. All names are local to the including file, and every function is
 // inlined: no code made for one CPU can serve another.
 //
 // A vector that is wider than the registers is two halves. (GCC can split wide vectors itself, but
@@ -241,6 +241,39 @@ template <int I, int N> MPM_INLINE Vec<N> broadcast(Vec<N> a)
 template <int K, int N> MPM_INLINE Vec<N> blend(Vec<N> a, Vec<N> b)
 {
   return shuffle<0, 1, (K > 2 ? 2 : 6), 7>(a, b);
+}
+
+/** Transposes the 4x4 lanes of each group of four lanes. */
+template <int N> MPM_INLINE void transpose(Vec<N> *a)
+{
+  const Vec<N> ab0 = shuffle<0, 4, 2, 6>(a[0], a[1]), ab1 = shuffle<1, 5, 3, 7>(a[0], a[1]);
+  const Vec<N> cd0 = shuffle<0, 4, 2, 6>(a[2], a[3]), cd1 = shuffle<1, 5, 3, 7>(a[2], a[3]);
+  a[0] = shuffle<0, 1, 4, 5>(ab0, cd0);
+  a[1] = shuffle<0, 1, 4, 5>(ab1, cd1);
+  a[2] = shuffle<2, 3, 6, 7>(ab0, cd0);
+  a[3] = shuffle<2, 3, 6, 7>(ab1, cd1);
+}
+
+/** Stores four numbers of each of the points side by side as rows of four. */
+template <int N> MPM_INLINE void store_as_rows(const Vec<N> (&numbers)[4], double *rows)
+{
+  if constexpr (N == 2) {
+    for (int l = 0; l < 2; l++)
+      quad(numbers[0].lane(l), numbers[1].lane(l), numbers[2].lane(l), numbers[3].lane(l))
+          .store(rows + 4 * l);
+  } else {
+    Vec<N> row[4] = {numbers[0], numbers[1], numbers[2], numbers[3]};
+    transpose(row);
+    MPM_UNROLL
+    for (int l = 0; l < 4; l++) {
+      if constexpr (N == 4) {
+        row[l].store(rows + 4 * l);
+      } else {
+        half<0>(row[l]).store(rows + 4 * l);
+        half<1>(row[l]).store(rows + 4 * (l + 4));
+      }
+    }
+  }
 }
 
 /** Stores the first K lanes. GCC 12 miscompiles stores of single lanes of a long vector in a row
