@@ -20,7 +20,7 @@ class MPMFlowRegions;
 /** Fluid that enters an incompressible flow through the inlets of fix mpm/emit, along an axis of
  *  the lattice.
  *
- *  Faces across a inlet, from its upstream to its downstream end, have the velocity of the inlet
+ *  Faces across an inlet, from its upstream to its downstream end, have the velocity of the inlet
  *  times the share of the face that is in its section, and the pressure does not change it. The
  *  cell upstream of the first of these faces has a source of the same flux, so that it does not
  *  matter what is behind the inlet: a wall, air, or water. Points in the inlet move rigidly with
@@ -31,7 +31,7 @@ class MPMFlowInflow : protected Pointers {
   /** Takes the inlets of points that belong to the flow of this group. */
   MPMFlowInflow(class LAMMPS *, const MPMFlowLattice &, int groupbit);
   /** For viscous flows: faces along inlets are held, too, as stress must not bend or turn the fluid
-   *  in a inlet. Without regions, the section then consists of whole cells: a partly filled cell
+   *  in an inlet. Without regions, the section then consists of whole cells: a partly filled cell
    *  would be slower and hold the others back. */
   bool clamps = false;
   bool any() const { return !inlets.empty(); }
@@ -44,10 +44,10 @@ class MPMFlowInflow : protected Pointers {
   void hold(std::vector<double> &velocity, std::vector<double> *mobility) const;
   /** [cell] volume that enters a cell per time, over its volume [1/time]; of all cells. */
   const std::vector<double> &sources() const { return source; }
-  /** Moves a point in a inlet by a step, and sets its velocity; returns false if it is in none. */
+  /** Moves a point in an inlet by a step, and sets its velocity; returns false if it is in none. */
   bool carry(double *x, double *v, double dt) const;
 
-  double memory_usage() const;
+  double memory_usage() const { return MPM_NS::bytes_of(held, source); }
 
  private:
   struct Section {
@@ -73,6 +73,7 @@ class MPMFlowInflow : protected Pointers {
 
   void find_section(Inlet &) const;
   void round_off(Inlet &) const;
+  void find_index(const Inlet &, int at, const Section &, int *index) const;
   void clamp(const Inlet &, int at, const Section &);
 };
 
