@@ -17,7 +17,7 @@
 #include "field/mpm_cpdi.h"
 #include "field/mpm_every.h"
 #include "field/mpm_field.h"
-#include "field/mpm_frame_total.h"
+#include "field/mpm_frame.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_node_sums.h"
 #include "field/mpm_point_batches.h"

@@ -81,7 +81,7 @@ void FixOwnDiffusion::add_stages(MPMPlan &plan, MPMPlan::Place place)
 {
   using Data = MPMStageData;    // what the stages read and write
   const Data own = {Data::OWN}, points = {Data::POSITION, Data::MASS, Data::BLOCKS, Data::OWN};
-  const Data nodes_and_points = points + Data{Data::NODES};
+  const Data nodes_and_points = {Data::POSITION, Data::MASS, Data::NODES, Data::BLOCKS, Data::OWN};
 
   if (place == MPMPlan::BEFORE_SOLVE)
     plan.each("scalar to nodes", points, own, [this](MPMField &field) {

@@ -32,7 +32,7 @@ GROUPS = ["bar", "rod", "solid", "solids"]
 REGIONS = {"bar": "block 0.01 0.04 0.01 0.04 0.01 0.04", "ball": "sphere 0.06 0.06 0.06 0.02",
            "plate": "block 0.01 0.09 0.01 0.09 0.01 0.02", "soil": "block -0.02 0.12 0 0.1 0 0.03",
            "shell": "cylinder z 0.05 0.05 0.045 INF INF side out", "lid": "plane 0 0.05 0 0 -1 0",
-           "mouth": "block 0.07 0.09 0.07 0.09 0.07 0.09", "drain": "block INF 0.025 INF INF INF INF"}
+           "inlet": "block 0.07 0.09 0.07 0.09 0.07 0.09", "drain": "block INF 0.025 INF INF INF INF"}
 CORNERS = [(0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
 FACES = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
 

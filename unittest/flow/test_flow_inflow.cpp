@@ -34,30 +34,30 @@ std::string channel(int dim, int axis, int side, const std::string &options,
   for (int d = 0; d < 3; d++) velocity += d == axis ? (side ? " 0.37" : " -0.37") : " 0";
   extent.pop_back();
   const char *const all = dim == 3 ? "0 4" : "0 8";
-  return box(dim, "si", faces, extent, 1, 0.3) + "region mouth block" + along(flow, all) +
+  return box(dim, "si", faces, extent, 1, 0.3) + "region inlet block" + along(flow, all) +
       "\nregion out block" + along(out, "INF INF") + "\nregion water block" + along(inside, all) +
-      "\ncreate_points 1 region water spacing 0.5\nfix in all mpm/emit 1 region mouth velocity" +
+      "\ncreate_points 1 region water spacing 0.5\nfix in all mpm/emit 1 region inlet velocity" +
       velocity + more + "\nfix w all mpm/incompressible 1.0 1000 " + options +
       "\nfix out all mpm/absorb region out\ntimestep 0.8\n";
 }
 
-/** Water 0.6 deep in a tank of 1 x 1 m, which rises by what comes out of a mouth in it or above. */
-std::string filled(double h, const char *mouth, const char *velocity,
+/** Water 0.6 deep in a tank of 1 x 1 m, which rises by what comes out of an inlet in it or above. */
+std::string filled(double h, const char *inlet, const char *velocity,
                    const std::string &options = "")
 {
-  return plane("si", "f f", "0 1 0 1", 1, 0.02) + "region mouth block " + mouth +
-      " INF INF\nregion dry block " + mouth +
+  return plane("si", "f f", "0 1 0 1", 1, 0.02) + "region inlet block " + inlet +
+      " INF INF\nregion dry block " + inlet +
       " INF INF side out\nregion low block INF INF 0 0.4 INF INF\nregion water intersect 2 low "
       "dry\n" +
       strprintf("create_points 1 region water spacing %.17g\n", 0.5 * h) +
-      "fix in all mpm/emit 1 region mouth velocity " + velocity +
+      "fix in all mpm/emit 1 region inlet velocity " + velocity +
       strprintf("\nfix w all mpm/incompressible %.17g 1000 ", h) + options +
       "\nfix g all gravity 9.81 vector 0 -1 0\n";
 }
 
 }    // namespace
 
-// A channel that is as wide as its mouth: all points have the velocity of the inflow, to the last digits, and as much goes as
+// A channel that is as wide as its inlet: all points have the velocity of the inflow, to the last digits, and as much goes as
 // comes; in all directions
 SERIAL_TEST(Channel, IsSteady)
 {
@@ -83,15 +83,15 @@ SERIAL_TEST(Channel, IsSteady)
       }
 }
 
-// A mouth that covers 5.5 of 8 cells: behind it, the mean velocity is less by as much from the first steps on
-SERIAL_TEST(Channel, IsWiderThanItsMouth)
+// An inlet that covers 5.5 of 8 cells: behind it, the mean velocity is less by as much from the first steps on
+SERIAL_TEST(Channel, IsWiderThanItsInlet)
 {
   Scene run(
       plane("si", "f f", "0 20 0 8", 1, 0.3) +
-      "region mouth block 0 2.3 0.6 6.1 INF INF\nregion dry block 0 2.3 0.6 6.1 INF INF side out\n"
+      "region inlet block 0 2.3 0.6 6.1 INF INF\nregion dry block 0 2.3 0.6 6.1 INF INF side out\n"
       "region out block 17.6 INF INF INF INF INF\nregion inside block 0 17.6 0 8 INF INF\n"
       "region water intersect 2 inside dry\ncreate_points 1 region water spacing 0.5\n"
-      "fix in all mpm/emit 1 region mouth velocity 0.4 0 0\nfix w all mpm/incompressible 1.0 1000\n"
+      "fix in all mpm/emit 1 region inlet velocity 0.4 0 0\nfix w all mpm/incompressible 1.0 1000\n"
       "fix out all mpm/absorb region out\ntimestep 0.2\nrun 4\n");
   double sum = 0.0, n = 0.0;
   for (const auto &s : run.gather())
@@ -109,9 +109,9 @@ SERIAL_TEST(Channel, BetweenRegions)
   Scene run(
       plane("si", "f f", "0 20 0 12", 1, 0.3) +
       "region low block INF INF INF 1.5 INF INF\nregion high block INF INF 9.5 INF INF INF\n"
-      "region mouth block 0 2.3 1.5 9.5 INF INF\nregion out block 17.6 INF INF INF INF INF\n"
+      "region inlet block 0 2.3 1.5 9.5 INF INF\nregion out block 17.6 INF INF INF INF INF\n"
       "region water block 2.3 17.6 1.5 9.5 INF INF\ncreate_points 1 region water spacing 0.5\n"
-      "fix in all mpm/emit 1 region mouth velocity 0.37 0 0\nfix w all mpm/incompressible 1.0 "
+      "fix in all mpm/emit 1 region inlet velocity 0.37 0 0\nfix w all mpm/incompressible 1.0 "
       "1000 region low region high\nfix out all mpm/absorb region out\ntimestep 0.8\nrun 40\n");
   double sum = 0.0, n = 0.0;
   for (const auto &s : run.gather())
@@ -146,19 +146,19 @@ SERIAL_TEST(Channel, BecomesPoiseuille)
   }
 }
 
-// What comes out of a mouth makes the water rise by its volume: at a wall below the surface, amid the water, and from above; the
+// What comes out of an inlet makes the water rise by its volume: at a wall below the surface, amid the water, and from above; the
 // section is no multiple of cells
 SERIAL_TEST(Tank, Rises)
 {
   struct Case {
-    const char *name, *mouth, *velocity;
+    const char *name, *inlet, *velocity;
     double area;
   };
   for (const auto &c : {Case{"at a wall", "0 0.133 0.213 0.391", "0.3 0 0", 0.178},
                         Case{"in the water", "0.308 0.429 0.113 0.291", "0.3 0 0", 0.178},
                         Case{"from above", "0.413 0.541 0.8 1.0", "0 -0.8 0", 0.128}})
     for (const double h : {0.05, 0.04}) {
-      Scene run(filled(h, c.mouth, c.velocity) +
+      Scene run(filled(h, c.inlet, c.velocity) +
                 "fix dt all mpm/dt 0.8 every 1 max 0.02 until 2.5\nrun 1000\n");
       const double speed = c.velocity[0] == '0' && c.velocity[1] == ' ' ? 0.8 : 0.3;
       const double in = run.evaluate("f_in");
@@ -171,7 +171,7 @@ SERIAL_TEST(Tank, Rises)
         }
       // exact inflow, but for a layer
       const double start = above                   ? 0.2 * 0.128
-          : c.mouth[0] == '0' && c.mouth[1] == ' ' ? 0.133 * 0.178
+          : c.inlet[0] == '0' && c.inlet[1] == ' ' ? 0.133 * 0.178
                                                    : 0.121 * 0.178;
       EXPECT_NEAR(in / 1000.0, start + c.area * speed * run.time(), 0.51 * h * c.area);
       const double level = run.evaluate("mass(all)") / 1000.0;
@@ -213,17 +213,17 @@ SERIAL_TEST(Tank, BearsWhatIsPoured)
               1.0, 0.02);
 }
 
-// A sheet of honey that hangs from its mouth: what has come by the time s bears its weight from then on, and stretches by
+// A sheet of honey that hangs from its inlet: what has come by the time s bears its weight from then on, and stretches by
 // 4 mu (Trouton), so that it is 1/(1 - b s (t - s)) times as long at t, b = rho g U/(4 mu)
-SERIAL_TEST(Sheet, HangsFromItsMouth)
+SERIAL_TEST(Sheet, HangsFromItsInlet)
 {
   constexpr double t = 40.0, U = 1.0, mu = 1000.0, b = 7.5e-4;
   for (const int cells : {4, 8}) {
     const double h = 8.0 / cells;
     Scene run(
         plane("si", "p f", "0 16 0 64", 1, 0.3) +
-        strprintf("region mouth block 4.3 12.3 %.17g 64 INF INF\n", 64.0 - 2.0 * h) +
-        strprintf("fix in all mpm/emit 1 region mouth velocity 0 %.17g 0\n", -U) +
+        strprintf("region inlet block 4.3 12.3 %.17g 64 INF INF\n", 64.0 - 2.0 * h) +
+        strprintf("fix in all mpm/emit 1 region inlet velocity 0 %.17g 0\n", -U) +
         strprintf("fix w all mpm/incompressible %.17g 1.0 viscosity %g implicit yes\n", h, mu) +
         strprintf("fix g all gravity %.17g vector 0 -1 0\n", 4.0 * mu * b / U) +
         strprintf("timestep 0.25\nrun %d\n", (int) (t / 0.25)));
@@ -266,7 +266,7 @@ TEST(Tank, RanksAndRestart)
     const std::string out =
         "region out block 0.8 INF INF 0.1 INF INF\nfix out all mpm/absorb region out\n";
     Continued again(scene, 13,
-                    "neighbor 0.02 bin\nregion mouth block 0.413 0.541 0.5 0.7 INF INF\n" + fixes +
+                    "neighbor 0.02 bin\nregion inlet block 0.413 0.541 0.5 0.7 INF INF\n" + fixes +
                         out + last,
                     30);
     EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
@@ -277,10 +277,10 @@ SERIAL_TEST(Channel, BadInput)
 {
   const auto plain = plane("si", "f f", "0 1 0 1", 1, 0.02) +
       "region low block INF INF 0 0.4 INF INF\ncreate_points 1 region low spacing 0.025\n"
-      "region mouth block 0.4 0.6 0.7 0.9 INF INF\n"
+      "region inlet block 0.4 0.6 0.7 0.9 INF INF\n"
       "region short block 0.4 0.6 0 0.03 INF INF\n";
   const std::string flow = "fix w all mpm/incompressible 0.05 1000 ",
-                    emit = "\nfix in all mpm/emit 1 region mouth velocity 0 -1 0";
+                    emit = "\nfix in all mpm/emit 1 region inlet velocity 0 -1 0";
   expect_refused(
       plain,
       {{flow + "reflect 0.5" + emit, "reflect cannot be used with points of fix mpm/emit"},
@@ -300,8 +300,8 @@ SERIAL_TEST(Channel, BadInput)
   // no surface, no way out
   const auto full = plane("si", "f f", "0 1 0 0.4", 1, 0.02) +
       "region water block 0.2 1 INF INF INF INF\ncreate_points 1 region water spacing "
-      "0.025\nregion mouth block 0 0.2 0 0.4 INF INF\n"
-      "fix in all mpm/emit 1 region mouth velocity 0.1 0 0\nfix w all mpm/incompressible 0.05 "
+      "0.025\nregion inlet block 0 0.2 0 0.4 INF INF\n"
+      "fix in all mpm/emit 1 region inlet velocity 0.1 0 0\nfix w all mpm/incompressible 0.05 "
       "1000\n";
   expect_refused(full, {{"timestep 0.01", "no room for what fix mpm/emit brings"}}, "run 2\n");
 }

@@ -523,8 +523,8 @@ SERIAL_TEST(Inflow, HasItsDensity)
 {
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) +
             "region water block INF INF 0 0.4 INF INF\ncreate_points 1 region water spacing 0.025\n"
-            "region mouth block 0.4 0.6 0.7 0.85 INF INF\ngroup oil empty\n"
-            "fix in oil mpm/emit 1 region mouth velocity 0 -0.5 0\n"
+            "region inlet block 0.4 0.6 0.7 0.85 INF INF\ngroup oil empty\n"
+            "fix in oil mpm/emit 1 region inlet velocity 0 -0.5 0\n"
             "fix w all mpm/incompressible 0.05 1000 liquid oil 800\n"
             "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.4 max 0.01\nrun 60\n");
   const int oil = run.lmp->group->bitmask[run.lmp->group->find("oil")];

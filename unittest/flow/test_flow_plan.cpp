@@ -65,10 +65,10 @@ TEST(Plan, StagesReadWhatOthersWrote)
     std::set<std::string> known = {"points"}, names;
     for (const auto &stage : flow.plan().list()) {
       EXPECT_TRUE(names.insert(stage.name).second) << stage.name;
-      for (const auto &read : stage.reads)
+      for (const auto &read : stage.reads.list())
         EXPECT_TRUE(known.count(read)) << stage.name << " " << read;
-      EXPECT_FALSE(stage.writes.empty()) << stage.name;
-      known.insert(stage.writes.begin(), stage.writes.end());
+      EXPECT_FALSE(stage.writes.list().empty()) << stage.name;
+      known.insert(stage.writes.list().begin(), stage.writes.list().end());
     }
     EXPECT_EQ(names.count("gas"), gas);
     EXPECT_EQ(flow.plan().list().back().name, "faces to points");

@@ -8,7 +8,7 @@
 
 #include "mpm_lammps.h"
 
-#include "field/mpm_lattice_ranks.h"
+#include "field/mpm_node_system.h"
 #include "flow/mpm_flow_lattice.h"
 #include "flow/mpm_flow_poisson.h"
 #include "flow/mpm_flow_rows.h"

@@ -14,23 +14,23 @@ namespace {
 
 constexpr double U = 2.0, B = 0.1, RHO = 1000.0;
 
-/** A plug of width B that flows along x from a mouth of length 0.1, nearly without stiffness. */
+/** A plug of width B that flows along x from an inlet of length 0.1, nearly without stiffness. */
 std::string plug(const std::string &lattice, double offset, const std::string &velocity,
                  const std::string &more = "")
 {
   return plane("si", "f f", "0 2 0 0.5", 1, 0.01) + "fix grid all mpm " + lattice +
       "\nfix m all mpm/material density 1000 eos linear 0.1\n" +
-      strprintf("region mouth block %.17g %.17g %.17g %.17g INF INF\n", 0.1 + offset, 0.2 + offset,
+      strprintf("region inlet block %.17g %.17g %.17g %.17g INF INF\n", 0.1 + offset, 0.2 + offset,
                 0.2 + offset, 0.2 + offset + B) +
-      "fix in all mpm/emit 1 region mouth velocity " + velocity + " " + more + "\n";
+      "fix in all mpm/emit 1 region inlet velocity " + velocity + " " + more + "\n";
 }
 
-/** Water as stiff as its jet needs, in the same mouth, against a wall at x = 0.6. */
-std::string jet(const std::string &mouth, const std::string &velocity, double h)
+/** Water as stiff as its jet needs, in the same inlet, against a wall at x = 0.6. */
+std::string jet(const std::string &inlet, const std::string &velocity, double h)
 {
   return plane("si", "f f", "0 0.6 -1 1", 1, 0.5 * h) + strprintf("fix grid all mpm %g\n", h) +
-      "fix m all mpm/material density 1000 eos tait 4e5 7\n" + mouth +
-      "fix in all mpm/emit 1 region mouth velocity " + velocity + R"(
+      "fix m all mpm/material density 1000 eos tait 4e5 7\n" + inlet +
+      "fix in all mpm/emit 1 region inlet velocity " + velocity + R"(
 region up block INF INF 0.75 INF INF INF
 region down block INF INF INF -0.75 INF INF
 fix up all mpm/absorb region up
@@ -69,7 +69,7 @@ void spacings(Scene &run, double spacing, double &least, double &most)
 
 }    // namespace
 
-// benchmark S5: the mass is that of the flow, and points are on their lattice, at any velocity and offset of the mouth
+// benchmark S5: the mass is that of the flow, and points are on their lattice, at any velocity and offset of the inlet
 struct Inflow {
   const char *options;
   double courant, offset;    // U dt/h, in cells
@@ -99,7 +99,7 @@ PARAMETER_TEST(Plug, IsExact, Inflow,
                       "run 0\n",
                       dt));
   const double start = run.fix("in")->compute_scalar();
-  EXPECT_NEAR(start, RHO * B * 0.1, 1e-9);    // the mouth is full
+  EXPECT_NEAR(start, RHO * B * 0.1, 1e-9);    // the inlet is full
   run.commands(strprintf("run %d\n", steps));
   // what has entered differs from the flow by half a layer at the most
   const double came = run.fix("in")->compute_scalar() - start, flow = RHO * B * U * steps * dt;
@@ -117,7 +117,7 @@ PARAMETER_TEST(Plug, IsExact, Inflow,
   EXPECT_EQ((int) tags.size(), run.n());
   EXPECT_LT(worst_J, 1e-9);
   EXPECT_LT(worst_v, 1e-9);
-  // the first layer began half a spacing from the end of the mouth
+  // the first layer began half a spacing from the end of the inlet
   EXPECT_NEAR(last, 0.2 + p.offset * h - 0.5 * d + U * steps * dt, 1e-9);
   double least, most;
   spacings(run, d, least, most);
@@ -134,9 +134,9 @@ TEST(Plug, PulsesAndOddWidth)
   const std::string scene = plane("si", "f f", "0 2 0 0.5", 1, 0.01) +
       R"(fix grid all mpm 0.02
 fix m all mpm/material density 1000 eos linear 0.1
-region mouth block 0.1 0.2 0.2 0.253 INF INF
+region inlet block 0.1 0.2 0.2 0.253 INF INF
 variable v equal 1.5*(1+sin(40*time))*(time<0.1||time>0.15)
-fix in all mpm/emit 1 region mouth velocity v_v 0 0 normal 3 0 0
+fix in all mpm/emit 1 region inlet velocity v_v 0 0 normal 3 0 0
 timestep 0.0004
 run 0
 )";
@@ -151,7 +151,7 @@ run 0
   }
   const double d = 0.01, layers = std::floor((way + 0.1) / d + 0.5);
   EXPECT_NEAR(run.fix("in")->compute_scalar(), RHO * 0.053 * d * layers, 1e-9);
-  // in the mouth points are as far apart as ever
+  // in the inlet points are as far apart as ever
   std::vector<double> row;
   for (const auto &s : run.gather())
     if (s.x[0] < 0.18 && std::fabs(s.x[1] - 0.2 - 0.1 * 0.053) < 1e-6) row.push_back(s.x[0]);
@@ -169,8 +169,8 @@ SERIAL_TEST(Plug, AroundAnAxis)
     Scene run(plane("si", "f f", "0 0.5 0 1", 1, 0.01) +
               "fix grid all mpm 0.02 axisymmetric yes\n"
               "fix m all mpm/material density 1000 eos linear 0.1\n" +
-              strprintf("region mouth block %g 0.1 0.8 0.9 INF INF\n", inner) +
-              "fix in all mpm/emit 1 region mouth velocity 0 -2 0\n"
+              strprintf("region inlet block %g 0.1 0.8 0.9 INF INF\n", inner) +
+              "fix in all mpm/emit 1 region inlet velocity 0 -2 0\n"
               "fix axis all mpm/boundary xlo slip\ntimestep 0.001\nrun 200\n");
     const double section = PI * (0.01 - inner * inner);
     EXPECT_NEAR(run.fix("in")->compute_scalar() / (RHO * section * 0.5), 1.0, 1e-9) << inner;
@@ -179,7 +179,7 @@ SERIAL_TEST(Plug, AroundAnAxis)
   }
 }
 
-// 3d: a round mouth, along and across the axes of the box
+// 3d: a round inlet, along and across the axes of the box
 SERIAL_TEST(Plug, InSpace)
 {
   struct Case {
@@ -191,8 +191,8 @@ SERIAL_TEST(Plug, InSpace)
                         Case{"block 0.1 0.3 0.41 0.63 0.3 0.57", "1 0 0", 0.22 * 0.27, 0.2}}) {
     Scene run(space("si", "f f f", "0 1 0 1 0 1", 1, 0.02) +
               "fix grid all mpm 0.05\nfix m all mpm/material density 1000 eos linear 0.1\n"
-              "region mouth " +
-              c.region + "\nfix in all mpm/emit 1 region mouth velocity " + c.velocity +
+              "region inlet " +
+              c.region + "\nfix in all mpm/emit 1 region inlet velocity " + c.velocity +
               "\ntimestep 0.01\nrun 40\n");
     const double flow = RHO * c.area * (c.length + 0.4);
     EXPECT_NEAR(run.fix("in")->compute_scalar() / flow, 1.0, 1e-4) << c.region;
@@ -203,7 +203,7 @@ SERIAL_TEST(Plug, InSpace)
   }
 }
 
-// an oblique mouth that moves itself: layers keep their distance, and the velocities add
+// an oblique inlet that moves itself: layers keep their distance, and the velocities add
 SERIAL_TEST(Plug, MovingAndOblique)
 {
   Scene run(plane("si", "f f", "0 2 0 2", 1, 0.01) + R"(
@@ -214,8 +214,8 @@ region b plane 0.36 0.38 0 -3 -4 0
 region c plane 0.3 0.3 0 4 -3 0
 region d plane 0.332 0.276 0 -4 3 0
 region around block 0.3 0.392 0.276 0.38 INF INF
-region mouth intersect 5 a b c d around
-fix in all mpm/emit 1 region mouth velocity 0.6 0.8 0 move 0.5 -0.25 0
+region inlet intersect 5 a b c d around
+fix in all mpm/emit 1 region inlet velocity 0.6 0.8 0 move 0.5 -0.25 0
 timestep 0.004
 run 100
 )");
@@ -233,15 +233,15 @@ run 100
   EXPECT_NEAR(first - last, 0.5 - 0.01, 1e-9);
 }
 
-// a mouth goes through walls, whatever is defined first
+// an inlet goes through walls, whatever is defined first
 SERIAL_TEST(Plug, ThroughAWall)
 {
   const std::string wall = "fix wall all mpm/boundary xlo ylo stick\n";
   for (const bool first : {false, true}) {
     Scene run(plane("si", "f f", "0 2 0 0.5", 1, 0.01) +
               "fix grid all mpm 0.02\nfix m all mpm/material density 1000 eos linear 0.1\n"
-              "region mouth block 0 0.1 0 0.1 INF INF\n" +
-              (first ? wall : "") + "fix in all mpm/emit 1 region mouth velocity 2 0 0\n" +
+              "region inlet block 0 0.1 0 0.1 INF INF\n" +
+              (first ? wall : "") + "fix in all mpm/emit 1 region inlet velocity 2 0 0\n" +
               (first ? "" : wall) + "timestep 1e-3\nrun 40\n");
     int n = 0;
     for (const auto &s : run.gather()) {
@@ -254,19 +254,19 @@ SERIAL_TEST(Plug, ThroughAWall)
   }
 }
 
-// the mouth bears the weight of what is in it, in units where forces need a factor
-SERIAL_TEST(Plug, WeightInTheMouth)
+// the inlet bears the weight of what is in it, in units where forces need a factor
+SERIAL_TEST(Plug, WeightInTheInlet)
 {
   Scene run(plane("metal", "f f", "0 100 0 100", 1, 2.0) + R"(
 fix grid all mpm 5
 fix m all mpm/material density 2 eos linear 100
-region mouth block 30 60 30 80 INF INF
-fix in all mpm/emit 1 region mouth velocity 0 0 0 normal 0 -1 0
+region inlet block 30 60 30 80 INF INF
+fix in all mpm/emit 1 region inlet velocity 0 0 0 normal 0 -1 0
 fix g all gravity 3 vector 0 -1 0
 timestep 0.001
 run 5
 )");
-  // fix gravity has the unit of force over mass; below the end of the mouth there is a node that is free to fall
+  // fix gravity has the unit of force over mass; below the end of the inlet there is a node that is free to fall
   const double weight = 3000.0 * 3.0;
   EXPECT_NEAR(run.fix("in")->compute_vector(10) / weight, 1.0, 1e-3);
   EXPECT_NEAR(run.fix("in")->compute_vector(9), 0.0, 1e-9 * weight);
@@ -279,13 +279,13 @@ SERIAL_TEST(Plug, GasUnderPressure)
   Scene run(plane("si", "f f", "0 2 0 0.1", 1, 0.01) + R"(
 fix grid all mpm 0.02
 fix m all mpm/material density 1.2 eos ideal/gas 1.4 pressure 1e5
-region mouth block 0.1 0.3 0 0.1 INF INF
-fix in all mpm/emit 1 region mouth velocity 50 0 0
+region inlet block 0.1 0.3 0 0.1 INF INF
+fix in all mpm/emit 1 region inlet velocity 50 0 0
 fix walls all mpm/boundary xlo xhi ylo yhi slip
 timestep 1.3e-5
 run 39
 )");
-  // in this step the third layer has come; all of these are at least a cell and a half from the end of the mouth
+  // in this step the third layer has come; all of these are at least a cell and a half from the end of the inlet
   const double pressure = 1e5;
   int n = 0;
   for (const auto &s : run.gather())
@@ -299,7 +299,7 @@ run 39
 // force on a wall and on a plate that a jet meets at an angle of 60 degrees (benchmark S5), flow rates, and balance of mass
 SERIAL_TEST(Jet, OnAWall)
 {
-  Scene run(jet("region mouth block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.0125));
+  Scene run(jet("region inlet block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.0125));
   run.commands("run 5200\n");
   const int steps = 2600;    // 10 B/U
   const double force = mean_of(run, "f_wall[1]", steps);
@@ -327,13 +327,13 @@ SERIAL_TEST(Jet, ObliqueOnAPlate)
     return strprintf("region %s plane %.17g %.17g 0 %.17g %.17g 0\n", name, px, py, nx, ny);
   };
   const double rx = a * (s + c), ry = a * (s + c);
-  const std::string mouth = flat("a", x - a * s, y - a * c, s, c) +
+  const std::string inlet = flat("a", x - a * s, y - a * c, s, c) +
       flat("b", x + a * s, y + a * c, -s, -c) + flat("c", x - a * c, y + a * s, c, -s) +
       flat("d", x + a * c, y - a * s, -c, s) +
       strprintf("region around block %.17g %.17g %.17g %.17g INF INF\n"
-                "region mouth intersect 5 a b c d around\n",
+                "region inlet intersect 5 a b c d around\n",
                 x - rx, x + rx, y - ry, y + ry);
-  Scene run(jet(mouth, strprintf("%.17g %.17g 0", U * s, U * c), 0.0125));
+  Scene run(jet(inlet, strprintf("%.17g %.17g 0", U * s, U * c), 0.0125));
   run.commands("run 7200\n");
   const double up = run.fix("up")->compute_scalar(), down = run.fix("down")->compute_scalar();
   const double force = mean_of(run, "f_wall[1]", 2400);
@@ -343,10 +343,10 @@ SERIAL_TEST(Jet, ObliqueOnAPlate)
   EXPECT_NEAR(measured("share that goes forward", above / (above + below)), 0.75, 0.02);
 }
 
-// density at the mouth, with the pressure of a wall close behind it
-SERIAL_TEST(Jet, DensityAtTheMouth)
+// density at the inlet, with the pressure of a wall close behind it
+SERIAL_TEST(Jet, DensityAtTheInlet)
 {
-  Scene run(jet("region mouth block 0.2 0.3 -0.047 0.053 INF INF\n", "2 0 0", 0.0125) +
+  Scene run(jet("region inlet block 0.2 0.3 -0.047 0.053 INF INF\n", "2 0 0", 0.0125) +
             "run 4000\n");
   double mass = 0.0, worst = 0.0;
   for (const auto &s : run.gather())
@@ -355,21 +355,21 @@ SERIAL_TEST(Jet, DensityAtTheMouth)
       mass += s.mass;
     }
   EXPECT_LT(measured("density - 1", worst), 0.01);
-  EXPECT_NEAR(measured("mass around the end of the mouth", mass / (RHO * 0.12 * B)), 1.0, 0.06);
+  EXPECT_NEAR(measured("mass around the end of the inlet", mass / (RHO * 0.12 * B)), 1.0, 0.06);
 }
 
-// A mouth that is shaken with what it holds works with the mean of its velocities before and after each step: that is what its material gets as
+// An inlet that is shaken with what it holds works with the mean of its velocities before and after each step: that is what its material gets as
 // kinetic energy, with any time step and transfer. All nodes that its points see are held: its end is just beyond a plane of nodes
-TEST(Plug, WorkOfAShakenMouth)
+TEST(Plug, WorkOfAShakenInlet)
 {
   for (const char *options : {"", " transfer flip 0.9", " transfer apic scheme musl"})
     for (const double dt : {0.002, 0.01}) {
       Scene run(plane("si", "f f", "0 2 0 1", 1, 0.02) + "fix grid all mpm 0.05 shape linear" +
                 options +
                 "\nfix m all mpm/material density 1000 eos linear 0.1\n"
-                "region mouth block 0.6 1.000001 0.4 0.6 INF INF\n"
+                "region inlet block 0.6 1.000001 0.4 0.6 INF INF\n"
                 "variable u equal 0.2+0.5*sin(20*time)\n"
-                "fix in all mpm/emit 1 region mouth velocity 0 0 0 normal 1 0 0 move 0 v_u 0\n"
+                "fix in all mpm/emit 1 region inlet velocity 0 0 0 normal 1 0 0 move 0 v_u 0\n"
                 "compute e all mpm/energy\nthermo_style custom step c_e\n" +
                 strprintf("timestep %g\nrun 1\n", dt));
       const auto kinetic = [&]() {
@@ -394,9 +394,9 @@ TEST(Channel, RanksAndRestart)
   const std::string fixes = R"(
 fix grid all mpm 0.05 MPM_OPTIONS
 fix m all mpm/material density 1000 eos tait 4e4 7 viscosity newtonian 5
-region mouth block 0.1 0.3 0.8 1.2 INF INF
+region inlet block 0.1 0.3 0.8 1.2 INF INF
 variable v equal 1.0+0.5*sin(9*time)
-fix in all mpm/emit 1 region mouth velocity v_v 0 0 normal 1 0 0
+fix in all mpm/emit 1 region inlet velocity v_v 0 0 normal 1 0 0
 region sink block 0.05 1.41 0.2 1.8 INF INF side out
 fix out all mpm/absorb region sink
 fix plate all mpm/boundary region plate slip
@@ -404,7 +404,7 @@ fix dt all mpm/dt 0.4
 compute e all mpm/energy
 thermo_style custom step c_e
 )";
-  // a jet at a plate; ranks share the mouth
+  // a jet at a plate; ranks share the inlet
   const std::string plate = "region plate block 0.8 0.9 1 2 INF INF\n";
   const std::string head = plane("si", "f f", "0 1.6 0 2", 1, 0.025) + plate;
   for (const char *options :
@@ -412,7 +412,7 @@ thermo_style custom step c_e
     const auto all = replaced(fixes, "MPM_OPTIONS", options);
     Twins twins(head + all, 500, "neighbor 0.025 bin\n" + plate + all, 150, 1e-9);
     EXPECT_GT(twins.whole.fix("out")->compute_scalar(), 10.0) << options;
-    // of the mouth also its force and work
+    // of the inlet also its force and work
     for (const char *id : {"in", "out"})
       for (int k = 0; k < (*id == 'i' ? 13 : 7); k++)
         EXPECT_EQ(twins.whole.fix(id)->compute_vector(k), twins.again.fix(id)->compute_vector(k))
@@ -425,15 +425,15 @@ thermo_style custom step c_e
   }
 }
 
-// no point gets the ID of one that was removed, by any mouth, on any number of ranks, nor after a restart
+// no point gets the ID of one that was removed, by any inlet, on any number of ranks, nor after a restart
 TEST(Channel, IDsComeOnce)
 {
   const std::string fixes = R"(
 fix grid all mpm 0.02
 fix m all mpm/material density 1000 eos linear 0.1
-region mouth block 0.1 0.2 0.2 0.3 INF INF
+region inlet block 0.1 0.2 0.2 0.3 INF INF
 region other block 0.15 0.25 0.38 0.44 INF INF
-fix in all mpm/emit 1 region mouth velocity 2 0 0
+fix in all mpm/emit 1 region inlet velocity 2 0 0
 fix on all mpm/emit 1 region other velocity 1 0 0
 timestep 0.002
 )";
@@ -468,8 +468,8 @@ TEST(Channel, Balance)
   Scene run(plane("si", "f f", "0 1.6 0 0.4", 1, 0.025) + R"(
 fix grid all mpm 0.05 gain error 1e-3
 fix m all mpm/material density 1000 eos linear 4e4
-region mouth block 0.1 0.3 0.08 0.323 INF INF
-fix in all mpm/emit 1 region mouth velocity 1 0 0 ppc 3
+region inlet block 0.1 0.3 0.08 0.323 INF INF
+fix in all mpm/emit 1 region inlet velocity 1 0 0 ppc 3
 region sink block 1.41 INF INF INF INF INF
 fix out all mpm/absorb region sink every 3
 fix dt all mpm/dt 0.5
@@ -488,7 +488,7 @@ run 3000
   EXPECT_NEAR(out[5], 0.5 * out[1], 1e-9 * out[1]);
   EXPECT_EQ(came[7], 1.0);
   EXPECT_NEAR(came[8], 243.0, 1e-9);
-  EXPECT_LT(std::fabs(came[9]), 1e-6);    // nothing pushes against the mouth
+  EXPECT_LT(std::fabs(came[9]), 1e-6);    // nothing pushes against the inlet
   // constant: the same number of points, but for the layer that comes next
   const int n = (int) all.size();
   run.commands("run 1500\n");
@@ -500,13 +500,13 @@ run 3000
 SERIAL_TEST(Channel, WatchKnows)
 {
   const auto text = lines_that_say(
-      jet("region mouth block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.02) +
+      jet("region inlet block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.02) +
           "compute e all mpm/energy\nthermo_style custom step c_e[9] c_e[10] c_e[11]\n"
           "variable lost equal -(c_e[9]+c_e[10]+c_e[11])\nrun 2700\n"
           "print \"the ledger lost ${lost}\"\n",
       "lost");
   const auto watch = lines_that_say(
-      jet("region mouth block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.02) + "run 2700\n",
+      jet("region inlet block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.02) + "run 2700\n",
       "energy at the end: kinetic");
   ASSERT_EQ(watch.size(), 1u);
   double ledger = 0.0, kinetic, stored, took;
@@ -527,8 +527,8 @@ SERIAL_TEST(Channel, Temperature)
   Scene run(plane("si", "f f", "0 1.6 0 0.4", 1, 0.025) + R"(
 fix grid all mpm 0.05
 fix m all mpm/material density 1000 eos linear 4e4 thermal conducting 900 300 50 melt 350 2e5
-region mouth block 0.1 0.3 0.1 0.3 INF INF
-fix in all mpm/emit 1 region mouth velocity 1 0 0 temperature 400
+region inlet block 0.1 0.3 0.1 0.3 INF INF
+fix in all mpm/emit 1 region inlet velocity 1 0 0 temperature 400
 fix heat all mpm/heat
 region sink block 1.41 INF INF INF INF INF
 fix out all mpm/absorb region sink
@@ -661,36 +661,36 @@ run 20000
 TEST(BadInput, IsRefused)
 {
   const std::string head = plane("si", "f f", "0 1.6 0 0.4", 2, 0.025) + R"(
-region mouth block 0.1 0.3 0.1 0.3 INF INF
+region inlet block 0.1 0.3 0.1 0.3 INF INF
 region ball sphere 0.3 0.2 0 0.1
 region all block INF INF INF INF INF INF
 region wide block 0.1 0.3 -0.1 0.3 INF INF
 region short block 0.1 0.12 0.1 0.3 INF INF
 region ring cylinder z 0.3 0.2 0.1 -0.5 0.5 side out
-region slant intersect 2 mouth cut
+region slant intersect 2 inlet cut
 variable back equal 0.5-step
 variable turn equal step*0.01
 variable atoms atom x
 )";
-  const std::string scene = replaced(head, "region slant intersect 2 mouth cut\n",
+  const std::string scene = replaced(head, "region slant intersect 2 inlet cut\n",
                                      "region cut plane 0.2 0.2 0 -1 -1 0\n"
-                                     "region slant intersect 2 mouth cut\n") +
+                                     "region slant intersect 2 inlet cut\n") +
       "fix grid all mpm 0.05\nfix m all mpm/material density 1000 eos linear 4e4\ntimestep 1e-4\n";
-  const std::string emit = "fix in all mpm/emit 1 region mouth velocity 1 0 0 ";
+  const std::string emit = "fix in all mpm/emit 1 region inlet velocity 1 0 0 ";
   expect_refused(
       scene,
       {{"fix in all mpm/emit", "Illegal fix mpm/emit"},
-       {"fix in all mpm/emit 3 region mouth velocity 1 0 0", "Invalid atom type 3"},
-       {"fix in all mpm/emit 1 velocity 1 0 0", "needs a mouth: use the keyword region"},
-       {"fix in all mpm/emit 1 region mouth", "needs the velocity"},
+       {"fix in all mpm/emit 3 region inlet velocity 1 0 0", "Invalid atom type 3"},
+       {"fix in all mpm/emit 1 velocity 1 0 0", "needs an inlet: use the keyword region"},
+       {"fix in all mpm/emit 1 region inlet", "needs the velocity"},
        {"fix in all mpm/emit 1 region none velocity 1 0 0", "Region none"},
-       {"fix in all mpm/emit 1 region mouth velocity 1 0 1", "along z in 2d"},
-       {"fix in all mpm/emit 1 region mouth velocity 0 0 0", "use the keyword normal"},
-       {"fix in all mpm/emit 1 region mouth velocity v_none 0 0", "does not exist"},
-       {"fix in all mpm/emit 1 region mouth velocity v_atoms 0 0", "not equal-style"},
+       {"fix in all mpm/emit 1 region inlet velocity 1 0 1", "along z in 2d"},
+       {"fix in all mpm/emit 1 region inlet velocity 0 0 0", "use the keyword normal"},
+       {"fix in all mpm/emit 1 region inlet velocity v_none 0 0", "does not exist"},
+       {"fix in all mpm/emit 1 region inlet velocity v_atoms 0 0", "not equal-style"},
        {"fix in all mpm/emit 1 region ball velocity 1 0 0", "straight piece of a pipe"},
        {"fix in all mpm/emit 1 region slant velocity 1 0 0", "straight piece of a pipe"},
-       {"fix in all mpm/emit 1 region mouth velocity 1 1 0", "straight piece of a pipe"},
+       {"fix in all mpm/emit 1 region inlet velocity 1 1 0", "straight piece of a pipe"},
        {"fix in all mpm/emit 1 region all velocity 1 0 0", "must be bounded"},
        {"fix in all mpm/emit 1 region ring velocity 1 0 0", "must be bounded"},
        {"fix in all mpm/emit 1 region wide velocity 1 0 0", "outside of the box"},
@@ -704,15 +704,15 @@ variable atoms atom x
        {emit + "hot yes", "hot"},
        {emit + "velocity 2 0 0", "velocity is given twice"},
        {emit + "region wide", "region is given twice"},
-       {"fix out all mpm/absorb region mouth region wide", "region is given twice"},
-       {"fix in all mpm/emit 1 region mouth velocity v_back 0 0", "use the keyword normal"},
-       {"fix in all mpm/emit 1 region mouth velocity 1 v_turn 0", "not along the direction"},
-       {"create_points 1 region mouth ppc 2\n" + emit, "is in the mouth at the start"},
+       {"fix out all mpm/absorb region inlet region wide", "region is given twice"},
+       {"fix in all mpm/emit 1 region inlet velocity v_back 0 0", "use the keyword normal"},
+       {"fix in all mpm/emit 1 region inlet velocity 1 v_turn 0", "not along the direction"},
+       {"create_points 1 region inlet ppc 2\n" + emit, "is in the inlet at the start"},
        {emit + "\nfix rest all mpm/relax 1e-3", "does not come to rest"},
        {"fix out all mpm/absorb", "needs the keyword region"},
        {"fix out all mpm/absorb region none", "does not exist"},
-       {"fix out all mpm/absorb region mouth every 0", "every"},
-       {emit + "\nfix out all mpm/absorb region mouth\nregion mouth delete", "does not exist"}},
+       {"fix out all mpm/absorb region inlet every 0", "every"},
+       {emit + "\nfix out all mpm/absorb region inlet\nregion inlet delete", "does not exist"}},
       "run 3\n");
   expect_refused(
       head.substr(0, head.find("region slant")),
@@ -747,8 +747,8 @@ SERIAL_TEST(Emit, AreaOfAnAnnulus)
     const std::string scene = plane("si", "f f", "0 0.3 0 0.8", 1, 0.01) +
         "fix grid all mpm 0.02 axisymmetric yes\nfix axis all mpm/boundary xlo slip\n"
         "fix m all mpm/material density 1000 eos linear 0.1\n"
-        "region mouth block 0.03 0.09 0.1 0.2 INF INF\n"
-        "fix in all mpm/emit 1 region mouth velocity 0 2 0 " +
+        "region inlet block 0.03 0.09 0.1 0.2 INF INF\n"
+        "fix in all mpm/emit 1 region inlet velocity 0 2 0 " +
         (area.empty() ? "" : area + strprintf("%.17g", exact)) + "\ntimestep 0.001\nrun 1\n";
     EXPECT_EQ(lines_that_say(scene, "across the flow, and").size(), 0u);
     Scene run(scene);
@@ -769,7 +769,7 @@ SERIAL_TEST(BadInput, AnotherArea)
   EXPECT_EQ(told(10.0 * B), 1u);
 }
 
-// a mouth that moves out of the box takes its points there
+// an inlet that moves out of the box takes its points there
 SERIAL_TEST(BadInput, OutOfTheBox)
 {
   Scene run(plug("0.02", 0.0, "2 0 0", "move -4 0 0") + "timestep 0.001\n");

@@ -8,8 +8,11 @@
 // Fix mpm/mesh: points on a mesh of triangles, quadrangles, tetrahedra, or hexahedra. Case S2 of the benchmarks, and Lame's
 // solution of a thick tube.
 
+#include "meshgrid/fix_mpm_mesh.h"
 #include "meshgrid/mesh_grid_testing.h"
 #include "mpm_lammps.h"
+
+#include <set>
 
 using namespace MPM_TEST;
 
@@ -54,6 +57,26 @@ double entry(Scene &run, int k)
 }
 
 }    // namespace
+
+// a stage reads the state of points, or what an earlier stage has written
+SERIAL_TEST(MeshGrid, StagesReadWhatOthersWrote)
+{
+  const ScratchFile file("tube.msh", tube(QUADS, 2));
+  for (const bool total : {false, true}) {
+    Scene run(scene(2, file.name, "linear 1 0.3", total ? "frame total" : "frame updated") +
+              "run 0\n");
+    const auto *const fix = dynamic_cast<FixMPMMesh *>(run.lmp->modify->get_fix_by_id("g"));
+    std::set<std::string> known = {"x", "v", "C", "F", "tau", "history", "mass", "f", "own"};
+    if (total) known.insert("cells");    // those of the start
+    for (const auto &stage : fix->plan().list()) {
+      for (const auto &read : stage.reads.list())
+        EXPECT_TRUE(known.count(read)) << stage.name << " " << read;
+      EXPECT_FALSE(stage.writes.list().empty()) << stage.name;
+      known.insert(stage.writes.list().begin(), stage.writes.list().end());
+    }
+    EXPECT_EQ(fix->plan().list().back().name, "motion and strain");
+  }
+}
 
 // Lame's solution of a tube under pressure: order 2, both frames
 SERIAL_TEST(MeshGrid, TubeUnderPressure)

@@ -8,7 +8,6 @@
 // with its geometry: the same iterations and pressures as on one rank.
 
 #include "field/mpm_halo.h"
-#include "field/mpm_lattice_ranks.h"
 #include "field/mpm_node_system.h"
 #include "mpm_lammps.h"
 #include "solve/cell_scenes.h"

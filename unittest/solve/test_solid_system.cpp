@@ -8,7 +8,7 @@
 // iterations and displacements as on one rank.
 
 #include "field/mpm_halo.h"
-#include "field/mpm_lattice_ranks.h"
+#include "field/mpm_node_system.h"
 #include "mpm_lammps.h"
 #include "solve/solid_scenes.h"
 

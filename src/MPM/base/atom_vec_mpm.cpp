@@ -32,8 +32,6 @@ static constexpr const char *properties[] = {
     "mpm_F33",      "mpm_stress11", "mpm_stress22", "mpm_stress33", "mpm_stress12", "mpm_stress13",
     "mpm_stress23", "mpm_stress21", "mpm_stress31", "mpm_stress32"};
 
-/* ---------------------------------------------------------------------- */
-
 MPMPoints *MPMPoints::get(Atom *atom, bool create)
 {
   for (auto &field : atom->peratom)
@@ -53,8 +51,6 @@ void MPMPoints::grow(Memory *memory, int nmax)
   tau = tau.grown(memory, nmax, 6, "atom:mpm_tau");
 }
 
-/* ---------------------------------------------------------------------- */
-
 AtomVecMPM::AtomVecMPM(LAMMPS *lmp) : AtomVec(lmp)
 {
   molecular = Atom::ATOMIC;
@@ -65,7 +61,6 @@ AtomVecMPM::AtomVecMPM(LAMMPS *lmp) : AtomVec(lmp)
   // F and stress go with the bonus data of LAMMPS, which a style keeps by itself
   // border: ghost points need nothing of this style (a sphere style sends radius and mass)
   // data_vel: must not have more columns than comm_vel, write_data relies on it
-
   fields_grow = fields_copy = fields_exchange = fields_restart = fields_create = {"rmass", "vfrac"};
   fields_data_atom = {"id", "type", "rmass", "vfrac", "x"};
   fields_data_vel = {"id", "v"};
@@ -77,8 +72,6 @@ AtomVecMPM::~AtomVecMPM()
   points->grow(memory, 0);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void AtomVecMPM::process_args(int narg, char **arg)
 {
   if (narg > 0)
@@ -87,11 +80,9 @@ void AtomVecMPM::process_args(int narg, char **arg)
   setup_fields();
 }
 
-/* ----------------------------------------------------------------------
-   The first set-up after read_restart is when LAMMPS drops what no fix has taken from the file.
-   Fixes of this package come later than this in the set-up. It may be that of another command,
-   before the input has come to its fixes
-------------------------------------------------------------------------- */
+/** The first set-up after read_restart is when LAMMPS drops what no fix has taken from the file.
+ *  Fixes of this package come later than this in the set-up. It may be that of another command,
+ *  before the input has come to its fixes. */
 
 namespace {
 struct Restart : Modify {
@@ -117,17 +108,14 @@ void AtomVecMPM::init()
   if (!left.empty() && comm->me == 0)
     error->warning(
         FLERR,
-        "The run that wrote the restart file had {}, and what is in the file of it is lost now: "
-        "if it shall go on, define it with the same ID and style directly after read_restart, "
-        "before commands that need the whole system, such as delete_atoms, balance, and run",
+        "The run that wrote the restart file had {}, and what is in the file of it is lost now: if "
+        "it shall go on, define it with the same ID and style directly after read_restart, before "
+        "commands that need the whole system, such as delete_atoms, balance, and run",
         left);
 }
 
-/* ----------------------------------------------------------------------
-   set local copies of the arrays, also when this is a sub-style of hybrid. Of other sub-styles that
-   use mass or volume in their own way, only spheres are fine, when they come first
-------------------------------------------------------------------------- */
-
+/** Set local copies of the arrays, also when this is a sub-style of hybrid. Of other sub-styles
+ *  that use mass or volume in their own way, only spheres are fine, when they come first. */
 void AtomVecMPM::grow_pointers()
 {
   rmass = atom->rmass;
@@ -153,35 +141,27 @@ void AtomVecMPM::grow_pointers()
       after_sphere = true;
     } else if (clash) {
       error->all(FLERR,
-                 "Atom style mpm cannot be combined with atom style {}, which uses the "
-                 "mass or volume of atoms in another way",
+                 "Atom style mpm cannot be combined with atom style {}, which uses the mass or "
+                 "volume of atoms in another way",
                  style);
     }
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 static double sphere_volume(double r)
 {
   return r > 0.0 ? MathConst::MY_4PI3 * r * r * r : 1.0;
 }
 
-/* ----------------------------------------------------------------------
-   a new atom is no material point until it is given a volume
-   (all other fields are zero here, those of sub-styles before this one are set)
-------------------------------------------------------------------------- */
-
+/** A new atom is no material point until it is given a volume (all other fields are zero here,
+ *  those of sub-styles before this one are set). */
 void AtomVecMPM::create_atom_post(int ilocal)
 {
   if (!after_sphere) rmass[ilocal] = 1.0;
   points->reset(ilocal);
 }
 
-/* ----------------------------------------------------------------------
-   F and stress, wherever an atom goes
-------------------------------------------------------------------------- */
-
+/** F and stress, wherever an atom goes. */
 void AtomVecMPM::copy_bonus(int i, int j, int)
 {
   std::copy_n(points->F[i], 9, points->F[j]);
@@ -212,17 +192,14 @@ double AtomVecMPM::memory_usage_bonus()
   return (double) MPMPoints::size * sizeof(double) * atom->nmax;
 }
 
-/* ----------------------------------------------------------------------
-   density and volume from the data file to mass
-------------------------------------------------------------------------- */
-
+/** Density and volume from the data file to mass. */
 void AtomVecMPM::data_atom_post(int ilocal)
 {
   const double volume = vfrac[ilocal];
   if (!(volume >= 0.0))
     error->one(FLERR,
-               "Invalid volume {} of atom {} in Atoms section of data file: it must be > 0 "
-               "for a material point and 0 for other atoms",
+               "Invalid volume {} of atom {} in Atoms section of data file: it must be > 0 for a "
+               "material point and 0 for other atoms",
                volume, atom->tag[ilocal]);
 
   if (volume > 0.0) {
@@ -230,25 +207,22 @@ void AtomVecMPM::data_atom_post(int ilocal)
     if (after_sphere) density /= sphere_volume(radius[ilocal]);
     if (!(density >= 0.0))
       error->one(FLERR,
-                 "Invalid density {} of atom {} in Atoms section of data file: it must be "
-                 "> 0, or 0 for a material point whose mass will come from fix mpm/material",
+                 "Invalid density {} of atom {} in Atoms section of data file: it must be > 0, or "
+                 "0 for a material point whose mass will come from fix mpm/material",
                  density, atom->tag[ilocal]);
     rmass[ilocal] = density * volume;
   } else if (!after_sphere && !(rmass[ilocal] > 0.0)) {
     error->one(FLERR,
-               "Invalid mass {} of atom {} in Atoms section of data file: an atom without "
-               "volume is no material point, and its density column is its mass, which must be > 0",
+               "Invalid mass {} of atom {} in Atoms section of data file: an atom without volume "
+               "is no material point, and its density column is its mass, which must be > 0",
                rmass[ilocal], atom->tag[ilocal]);
   }
 
   points->reset(ilocal);
 }
 
-/* ----------------------------------------------------------------------
-   mass to density for AtomVec::pack_data()
-   after a sphere style, rmass is mass / (volume of the sphere), and radius the diameter
-------------------------------------------------------------------------- */
-
+/** Mass to density for AtomVec::pack_data(). After a sphere style, rmass is mass / (volume of the
+ *  sphere), and radius the diameter. */
 void AtomVecMPM::pack_data_pre(int ilocal)
 {
   rmass_one = rmass[ilocal];
@@ -256,36 +230,21 @@ void AtomVecMPM::pack_data_pre(int ilocal)
 
   if (after_sphere && rmass_one == 0.0)
     error->one(FLERR,
-               "Material point {} has no mass yet, and atom style sphere cannot read such "
-               "atoms from a data file: define fix mpm/material before write_data",
+               "Material point {} has no mass yet, and atom style sphere cannot read such atoms "
+               "from a data file: define fix mpm/material before write_data",
                atom->tag[ilocal]);
   const double sphere = after_sphere ? sphere_volume(0.5 * radius[ilocal]) : 1.0;
   rmass[ilocal] = rmass_one * sphere / vfrac[ilocal];
 }
 
-/* ----------------------------------------------------------------------
-   undo pack_data_pre(); a sphere style has restored rmass already
-------------------------------------------------------------------------- */
-
-void AtomVecMPM::pack_data_post(int ilocal)
-{
-  if (!after_sphere) rmass[ilocal] = rmass_one;
-}
-
-/* ----------------------------------------------------------------------
-   index of a property for compute property/atom, -1: unknown
-------------------------------------------------------------------------- */
-
+/** Index of a property for compute property/atom, -1: unknown. */
 int AtomVecMPM::property_atom(const std::string &name)
 {
   const auto *const end = std::end(properties), *const found = std::find(properties, end, name);
   return found == end ? -1 : (int) (found - properties);
 }
 
-/* ----------------------------------------------------------------------
-   pack a property of the atoms of a group, 0 for those that are no material points
-------------------------------------------------------------------------- */
-
+/** Pack a property of the atoms of a group, 0 for those that are no material points. */
 void AtomVecMPM::pack_property_atom(int index, double *buf, int nvalues, int groupbit)
 {
   for (int i = 0; i < atom->nlocal; i++) {

@@ -37,7 +37,10 @@ class AtomVecMPM : public AtomVec {
   void create_atom_post(int) override;
   void data_atom_post(int) override;
   void pack_data_pre(int) override;
-  void pack_data_post(int) override;
+  void pack_data_post(int ilocal) override
+  {
+    if (!after_sphere) rmass[ilocal] = rmass_one;
+  }
   int property_atom(const std::string &) override;
   void pack_property_atom(int, double *, int, int) override;
 

@@ -28,20 +28,20 @@ template <std::size_t N> class MPMFirstNote {
   void begin() { mine = nothing(); }
 
   /** Has a note been reported? The same on all ranks. */
-  bool told() const { return is_told; }
+  bool is_reported() const { return reported; }
 
   /** Has a note been reported, or has this rank a note of an earlier step? Then there is no need to
    *  look for events. */
-  bool knows(double step) const { return is_told || mine[0] < step; }
+  bool knows(double step) const { return reported || mine[0] < step; }
 
   /** Takes a note of this rank; the least one is kept. */
   void take(const Numbers &numbers) { mine = std::min(mine, numbers); }
 
   /** Returns true once, when a rank has a note. Then first is the least note of all ranks.
    *  Collective. */
-  bool tell(MPI_Comm world, Numbers &first)
+  bool report(MPI_Comm world, Numbers &first)
   {
-    if (is_told) return false;
+    if (reported) return false;
     bool candidate = true;
     first = nothing();
     for (std::size_t k = 0; k < N; k++) {
@@ -50,7 +50,7 @@ template <std::size_t N> class MPMFirstNote {
       if (first[0] == NONE) return false;
       candidate = candidate && mine[k] == first[k];
     }
-    return is_told = true;
+    return reported = true;
   }
 
  private:
@@ -63,7 +63,7 @@ template <std::size_t N> class MPMFirstNote {
   }
 
   Numbers mine = nothing();
-  bool is_told = false;
+  bool reported = false;
 };
 
 }    // namespace LAMMPS_NS

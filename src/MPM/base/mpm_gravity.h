@@ -9,22 +9,42 @@
 #ifndef LMP_MPM_GRAVITY_H
 #define LMP_MPM_GRAVITY_H
 
+#include "error.h"
+#include "fix.h"
+#include "lammps.h"
+#include "modify.h"
+
+#include <algorithm>
 #include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
-class Fix;
-class LAMMPS;
 
 /** Sum of the gravity of all fix gravity commands. */
 class MPMGravity {
  public:
   MPMGravity() = default;
   /** user: named in the error if a fix gravity has a group other than all. */
-  MPMGravity(LAMMPS *, const std::string &user);
+  MPMGravity(LAMMPS *lmp, const std::string &user) :
+      fixes(lmp->modify->get_fix_by_style("^gravity"))
+  {
+    for (const auto *fix : fixes)
+      if (fix->igroup != 0)
+        lmp->error->all(FLERR, Error::NOLASTLINE,
+                        "{} takes the weight from fix gravity {}, which must be of group all", user,
+                        fix->id);
+  }
   bool empty() const { return fixes.empty(); }
   /** The present force per mass [force/mass]. */
-  void find(double gravity[3]) const;
+  void find(double gravity[3]) const
+  {
+    std::fill_n(gravity, 3, 0.0);
+    for (auto *fix : fixes) {
+      int dim;
+      const auto *const g = (const double *) fix->extract("gvec", dim);
+      for (int d = 0; d < 3; d++) gravity[d] += g[d];
+    }
+  }
 
  private:
   std::vector<Fix *> fixes;

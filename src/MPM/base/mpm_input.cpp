@@ -10,7 +10,6 @@
 
 #include "law/plugin.h"
 
-#include "base/mpm_broadcast.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -78,18 +77,16 @@ static std::string read_words(LAMMPS *lmp, const std::string &name, std::string 
 {
   const std::string path = find_file(name);
   if (path.empty())
-    return fmt::format(
-        "cannot read file {}: it is not here, nor in a folder of the environment variable "
-        "LAMMPS_POTENTIALS, nor among the files of this package",
-        name);
+    return fmt::format("cannot read file {}: it is not here, nor in a folder of the environment "
+                       "variable LAMMPS_POTENTIALS, nor among the files of this package",
+                       name);
   const std::string units = utils::get_potential_units(path, "material");
   const std::string ours = lmp->update->unit_style;
   if (units.empty())
     return fmt::format("the first line of file {} must give its units, such as 'UNITS: si'", name);
   if (units != ours)
     return fmt::format(
-        "file {} is in {} units but the input uses {} units: convert the file or use "
-        "units {}",
+        "file {} is in {} units but the input uses {} units: convert the file or use units {}",
         name, units, ours, units);
   utils::logmesg(lmp, "Reading material file {} with DATE: {}\n", name,
                  utils::get_potential_date(path, "material"));
@@ -108,12 +105,9 @@ static std::string read_words(LAMMPS *lmp, const std::string &name, std::string 
   return "";
 }
 
-/* ----------------------------------------------------------------------
-   definition in a file with the header of a LAMMPS potential file:
-   rank 0 reads words and their line numbers, all ranks parse. What follows the file name in the
-   input continues the definition: more parts, or options of the last part in the file.
-------------------------------------------------------------------------- */
-
+/** Definition in a file with the header of a LAMMPS potential file: rank 0 reads words and their
+ *  line numbers, all ranks parse. What follows the file name in the input continues the definition:
+ *  more parts, or options of the last part in the file. */
 static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &caller, int first,
                                            int narg, char **arg)
 {
@@ -145,8 +139,6 @@ static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &calle
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::string &caller,
                                                    int first, int narg, char **arg)
 {
@@ -155,10 +147,10 @@ std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::strin
 
   for (int iarg = first; iarg < narg; iarg++)
     if (strcmp(arg[iarg], "file") == 0)
-      lmp->error->all(FLERR, iarg,
-                      "{}: the 'file' of a material must come first; what follows its name can add "
-                      "to it",
-                      caller);
+      lmp->error->all(
+          FLERR, iarg,
+          "{}: the 'file' of a material must come first; what follows its name can add to it",
+          caller);
   try {
     return Material::create(std::vector<std::string>(arg + first, arg + narg));
   } catch (const MaterialError &e) {
@@ -166,10 +158,7 @@ std::unique_ptr<Material> LAMMPS_NS::read_material(LAMMPS *lmp, const std::strin
   }
 }
 
-/* ----------------------------------------------------------------------
-   sets, groups, and data of a mesh, with their names
-------------------------------------------------------------------------- */
-
+/** Sets, groups, and data of a mesh, with their names. */
 static void broadcast_named(Mesh &mesh, MPI_Comm world)
 {
   std::vector<int> counts = {(int) mesh.sets.size(), (int) mesh.data.size()};
@@ -197,8 +186,6 @@ static void broadcast_named(Mesh &mesh, MPI_Comm world)
     broadcast(data.values, world);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** What prepare() makes of the mesh in a file, on all ranks. */
 static Mesh read_on_all(LAMMPS *lmp, const std::string &file, const std::string &user, int iarg,
@@ -238,8 +225,6 @@ Mesh LAMMPS_NS::read_whole_mesh(LAMMPS *lmp, const std::string &file, const std:
     mesh.orient(lmp->domain->dimension);
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPM_NS::register_laws(void *ptr, const LawVersion &version, const PluginLaw *laws, int n)
 {

@@ -9,10 +9,16 @@
 #ifndef LMP_MPM_INPUT_H
 #define LMP_MPM_INPUT_H
 
-// Materials and meshes that the input defines, also by files, which rank 0 reads for all.
-
+#include "lmptype.h"
 #include "material/material.h"
 #include "mesh/mesh_file.h"
+
+#include <algorithm>
+#include <mpi.h>
+
+// Materials and meshes that the input defines, also by files, which rank 0 reads for all.
+
+// Sends data that one rank has read from a file to all ranks.
 
 namespace LAMMPS_NS {
 class LAMMPS;
@@ -32,6 +38,19 @@ MPM_NS::Mesh read_body(LAMMPS *, const std::string &file, const std::string &par
 /** Reads all elements of a file, with their groups, on all ranks. Elements of the dimension of the
  *  simulation are numbered in the positive sense. Errors as for read_body(). */
 MPM_NS::Mesh read_whole_mesh(LAMMPS *, const std::string &file, const std::string &user, int iarg);
+
+/** Sends a vector or string of plain data of rank 0 to all ranks, in pieces, as its length may be
+ *  more than an int. Collective. */
+template <class Data> void broadcast(Data &data, MPI_Comm world)
+{
+  constexpr std::size_t SIZE = sizeof(typename Data::value_type);
+  constexpr bigint PIECE = (1 << 30) / SIZE;
+  bigint n = data.size();
+  MPI_Bcast(&n, 1, MPI_LMP_BIGINT, 0, world);
+  data.resize(n);
+  for (bigint k = 0; k < n; k += PIECE)
+    MPI_Bcast(data.data() + k, (int) (std::min(PIECE, n - k) * SIZE), MPI_BYTE, 0, world);
+}
 
 }    // namespace LAMMPS_NS
 #endif

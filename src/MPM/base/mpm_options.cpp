@@ -8,8 +8,8 @@
 
 #include "base/mpm_options.h"
 
-#include "base/mpm_cycle.h"
 #include "base/mpm_find_fixes.h"
+#include "base/mpm_step_limit.h"
 #include "error.h"
 #include "fix.h"
 #include "input.h"

@@ -9,10 +9,12 @@
 #ifndef LMP_MPM_OPTIONS_H
 #define LMP_MPM_OPTIONS_H
 
+#include "declare/option.h"
+
+#include <string>
+
 // Declared options (declare/option.h) in LAMMPS: numbers are read as everywhere in its input, and a
 // mistake is an error of LAMMPS that points to the argument.
-
-#include "declare/option.h"
 
 namespace LAMMPS_NS {
 class Fix;
@@ -42,6 +44,29 @@ double evaluate(LAMMPS *, const MPM_NS::NumberOrVariable &);
 /** Calls f(), which evaluates variables. any: are there variables? If so, their computes are
  *  requested for the next step of the cycle, or of the run if there is no field. */
 void evaluate_in_step(LAMMPS *, bool any, const std::function<void()> &f);
+
+/** Value of a keyword every: a number of steps, or the word auto, which is stored as 0. */
+inline MPM_NS::OptionValue steps_or_auto(int &to, const std::string &of_number,
+                                         const std::string &of_auto)
+{
+  MPM_NS::OptionValue value = MPM_NS::option::integer(to, "N", MPM_NS::POSITIVE, of_number);
+  const auto read = value.read;
+  const auto text = value.text;
+  value.usage = "N or *auto*";
+  value.notes.push_back({"*auto*", of_auto});
+  value.read = [&to, read](MPM_NS::OptionReader &r) {
+    if (r.iarg < r.input.narg && std::string(r.input.arg[r.iarg]) == "auto") {
+      r.next();
+      to = 0;
+    } else {
+      read(r);
+    }
+  };
+  value.text = [&to, text] {
+    return to ? text() : std::string("auto");
+  };
+  return value;
+}
 
 }    // namespace LAMMPS_NS
 #endif

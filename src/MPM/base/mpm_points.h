@@ -9,8 +9,12 @@
 #ifndef LMP_MPM_POINTS_H
 #define LMP_MPM_POINTS_H
 
+#include "atom.h"
 #include "base/mpm_rows.h"
 #include "math/matrix.h"
+
+#include <algorithm>
+#include <vector>
 
 namespace LAMMPS_NS {
 class Atom;
@@ -54,5 +58,16 @@ struct MPMPoints {
    *  it is absent. */
   static MPMPoints *get(Atom *atom, bool create = false);
 };
+
+/** Gives a list room for all points, with zeros for those of this rank and its ghosts. LAMMPS has
+ *  room for 16384 points or more: to clear all of it would take a fifth of the step of a small
+ *  body. */
+inline void clear_points(std::vector<double> &list, const Atom *atom, int width = 1)
+{
+  const std::size_t w = width;
+  list.resize(w * atom->nmax);
+  std::fill_n(list.begin(), w * (atom->nlocal + atom->nghost), 0.0);
+}
+
 }    // namespace LAMMPS_NS
 #endif

@@ -17,8 +17,6 @@
 
 using namespace LAMMPS_NS;
 
-/* ---------------------------------------------------------------------- */
-
 MPMPointState::~MPMPointState()
 {
   for (auto &array : arrays) {
@@ -104,8 +102,6 @@ int MPMPointState::unpack(int i, const double *buf)
   return size();
 }
 
-/* ---------------------------------------------------------------------- */
-
 FixMPMState::~FixMPMState()
 {
   if (!callbacks || !modify) return;
@@ -153,16 +149,13 @@ void FixMPMState::unpack_restart(int i, int nth)
   const double *values = from_restart(i, nth, n);
   if (n != state.size()) {
     const auto layout = state.layout();
-    error->one(
-        FLERR, Error::NOLASTLINE,
-        "The restart file has {} numbers per point for fix {} (style {}), not {}{}: give the "
-        "fix the options with which the file was written",
-        n, id, style, state.size(), layout.empty() ? "" : " (" + layout + ")");
+    error->one(FLERR, Error::NOLASTLINE,
+               "The restart file has {} numbers per point for fix {} (style {}), not {}{}: give "
+               "the fix the options with which the file was written",
+               n, id, style, state.size(), layout.empty() ? "" : " (" + layout + ")");
   }
   state.unpack(i, values);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void LAMMPS_NS::keep_totals(MPI_Comm world, double *values, int n)
 {

@@ -27,5 +27,15 @@ class MPMStepLimit {
   ~MPMStepLimit() = default;    // owned and deleted as a Fix
 };
 
+/** A fix whose points take one step in several steps of the run (a cycle). */
+class MPMCycle {
+ public:
+  /** Steps of the run until the next step of the cycle ends, seen from the end of this step. */
+  virtual int steps_to_next() const = 0;
+
+ protected:
+  ~MPMCycle() = default;    // owned and deleted as a Fix
+};
+
 }    // namespace LAMMPS_NS
 #endif

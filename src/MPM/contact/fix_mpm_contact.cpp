@@ -22,7 +22,7 @@
 #include "error.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
-#include "field/mpm_refined_body.h"
+#include "field/mpm_interfaces.h"
 #include "force.h"
 #include "modify.h"
 

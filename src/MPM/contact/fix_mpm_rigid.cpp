@@ -29,8 +29,8 @@
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
-#include "field/mpm_fluid.h"
 #include "field/mpm_forces.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "force.h"
 #include "math/coulomb.h"
@@ -39,7 +39,7 @@
 #include "modify.h"
 #include "update.h"
 #include "walls/mpm_patch_sums.h"
-#include "walls/mpm_region_body.h"
+#include "walls/mpm_region_cut.h"
 #include "walls/region_mpm_mesh.h"
 
 #include <Eigen/Dense>

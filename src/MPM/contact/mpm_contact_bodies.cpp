@@ -10,10 +10,10 @@
 
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_sums.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
-#include "field/mpm_refined_body.h"
 #include "modify.h"
 #include "walls/fix_mpm_boundary.h"
 

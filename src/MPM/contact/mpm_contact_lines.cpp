@@ -96,7 +96,7 @@ void MPMContactLines::find_lines()
 {
   auto &pairs = contacts->pairs;
   std::map<Key, std::vector<std::pair<int, int>>> all;
-  const Lattice &lattice = bodies[0].field->lattice;
+  const MPM_NS::Lattice &lattice = bodies[0].field->lattice;
   for (std::size_t p = 0; p < pairs.size(); p++) {
     MPMNodeContact &pair = pairs[p];
     if (is_beyond_walls(pair)) continue;
@@ -136,7 +136,7 @@ void MPMContactLines::find_lines()
 MPMContactLines::Coverage MPMContactLines::coverage(const MPMContactBody &body, const Line &line,
                                                     double sign) const
 {
-  const Lattice &lattice = body.field->lattice;
+  const MPM_NS::Lattice &lattice = body.field->lattice;
   const double cross = lattice.cell_volume() / lattice.h;
   Coverage covered = {};
   int at[3] = {line.index[0], line.index[1], line.index[2]};
@@ -186,7 +186,7 @@ double MPMContactLines::turn_to_wider(Line &line) const
 void MPMContactLines::visit_neighbors(const LinesByKey &by_key, const Line &line,
                                       const std::function<void(int k)> &use) const
 {
-  const Lattice &lattice = bodies[0].field->lattice;
+  const MPM_NS::Lattice &lattice = bodies[0].field->lattice;
   const int first = line.axis == 0 ? 1 : 0, second = line.axis == 2 ? 1 : 2,
             across = lattice.dim == 3 ? 1 : 0;
   for (int i = -1; i <= 1; i++)

@@ -211,7 +211,7 @@ void MPMContactSolver::note_unsolved(const Problem *first, const Problem *last)
 void MPMContactSolver::report_unsolved(const char *id)
 {
   std::array<double, 4> first;
-  if (unsolved.tell(world, first) && comm->me == 0)
+  if (unsolved.report(world, first) && comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/contact {}: {} iterations were not enough to find what bodies give to "
                    "each other at the node at {:.6g} {:.6g} {:.6g} in step {:.0f}: they approach "

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Contact between bodies in the steps of a solver (mpm_body_contact.h). In explicit steps each node
+// Contact between bodies in the steps of a solver (MPMBodyContact). In explicit steps each node
 // that bodies share is in contact by itself: its velocities are those of both bodies, also one and
 // two layers of nodes inside, so that the strain of a soft body next to a hard one is that of the
 // hard one. In the balance of forces, this would make a soft body about half a cell thinner. Here,
@@ -363,7 +363,7 @@ void MPMContactTrial::visit_row(std::size_t row,
   }
 }
 
-void MPMContactTrial::forget_pushes()
+void MPMContactTrial::clear_impulses()
 {
   for (auto &tie : ties) MathExtra::zero3(tie.push);
 }

@@ -13,7 +13,7 @@
 #include "contact/mpm_contact_lines.h"
 #include "contact/mpm_contact_report.h"
 #include "contact/mpm_contact_search.h"
-#include "field/mpm_body_contact.h"
+#include "field/mpm_trial_contact.h"
 #include "pointers.h"
 
 #include <vector>
@@ -58,7 +58,7 @@ class MPMContactTrial : public MPMBodyContact, protected Pointers {
   // MPMTrialContact
   void begin_trials(MPMField &, double dt, double slip_time, double eps, bool rests) override;
   bool find_carried(MPMField &, std::vector<double> &) override { return false; }
-  void bear_carried(MPMField &, double *) override {}
+  void constrain_carried(MPMField &, double *) override {}
   bool close_gaps(bool yes) override;
   void check_arrival() override {}
   bool has_friction() const override
@@ -67,7 +67,7 @@ class MPMContactTrial : public MPMBodyContact, protected Pointers {
   }
   bool is_regularised() const override { return false; }
   bool rubs() const override;
-  void forget_pushes() override;
+  void clear_impulses() override;
   void take_base() override;
   void take_forces(double scale) override;
   void add_friction(const double *u, double *force) override;
@@ -78,7 +78,7 @@ class MPMContactTrial : public MPMBodyContact, protected Pointers {
   bool decide(const double *u, double unbalanced) override;
   void soften(double) override {}
   void take_stop() override;
-  void foresee_velocities(const double *, double share) override { force_share = share; }
+  void predict_velocities(const double *, double share) override { force_share = share; }
 
  private:
   struct Link {             // a node of a tie

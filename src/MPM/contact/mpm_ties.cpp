@@ -8,8 +8,8 @@
 
 #include "contact/mpm_ties.h"
 
-#include "field/mpm_body_contact.h"
 #include "field/mpm_node_system.h"
+#include "field/mpm_trial_contact.h"
 
 #include "comm.h"
 #include "error.h"

@@ -11,7 +11,7 @@
 #include "create/create_points.h"
 
 #include "atom.h"
-#include "base/mpm_broadcast.h"
+#include "base/mpm_input.h"
 #include "base/mpm_options.h"
 #include "comm.h"
 #include "domain.h"

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_DIFFUSION_SOLVER_H
 #define LMP_MPM_DIFFUSION_SOLVER_H
 
-#include "field/mpm_lattice_ranks.h"
+#include "field/mpm_node_system.h"
 #include "solve/krylov.h"
 #include "solve/linear_system.h"
 #include "solve/spline_multigrid.h"

@@ -86,7 +86,7 @@ class MPMNodeScalar {
    *  points_to_nodes(). */
   using GiveValues =
       std::function<void(const MPMPointMap::Run &, int first, int n, double *values)>;
-  /** Extends u by terms of a series, as XPIC and FMPM do for velocities, see mpm_stage_series.cpp.
+  /** Extends u by terms of a series, as XPIC and FMPM do for velocities, see mpm_stages.cpp.
    *  u: in: values of nodes from points without slopes; out: this number of terms of the series for
    *  nodal values that would give the points their own values, u <- u + (value - S+ S u), where S
    *  maps nodes to points, and S+ maps back by capacities. sum_i C_i u_i does not change. */

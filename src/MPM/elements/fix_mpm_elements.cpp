@@ -9,11 +9,9 @@
 #include "elements/fix_mpm_elements.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_image.h"
 #include "base/mpm_input.h"
 #include "base/mpm_options.h"
-#include "base/mpm_pair_styles.h"
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "domain.h"
@@ -29,6 +27,7 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "pair.h"
+#include "step/mpm_grains.h"
 #include "update.h"
 
 #include <algorithm>

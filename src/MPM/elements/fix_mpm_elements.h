@@ -19,7 +19,7 @@ FixStyle(mpm/elements,FixMPMElements);
 #include "elements/element_forces.h"
 #include "elements/element_surface.h"
 #include "elements/mpm_elements_options.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "mesh/element_body.h"
 
 #include <functional>

@@ -28,8 +28,6 @@ using namespace MPM_NS;
 
 static constexpr int RESTART_VERSION = 2;
 
-/* ---------------------------------------------------------------------- */
-
 FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   static_assert(NWORK <= sizeof(work) / sizeof(double), "room for all kinds of work");
@@ -65,8 +63,6 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
 
 FixMPMMaterial::~FixMPMMaterial() = default;
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMMaterial::init()
 {
   material->initialized();
@@ -81,7 +77,6 @@ void FixMPMMaterial::init()
   assign_mass();
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
-
   if (mass_varies) return;
   bigint n = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {
@@ -97,11 +92,8 @@ void FixMPMMaterial::init()
                    all, id);
 }
 
-/* ----------------------------------------------------------------------
-   a law that bears nothing across a plane would let points, and elements that are no surfaces, fall
-   apart; the latter are refused by fix mpm/elements
-------------------------------------------------------------------------- */
-
+/** A law that bears nothing across a plane would let points, and elements that are no surfaces,
+ *  fall apart; the latter are refused by fix mpm/elements. */
 void FixMPMMaterial::check_surfaces() const
 {
   int nodes = 0;
@@ -111,18 +103,14 @@ void FixMPMMaterial::check_surfaces() const
     n += (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 && !(atom->mask[i] & nodes);
   MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/material {}: its law bears nothing across a surface, and {} of its points are "
-        "no nodes of one: use fix mpm/elements with thickness and axes for them",
-        id, all);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/material {}: its law bears nothing across a surface, and {} of its points "
+               "are no nodes of one: use fix mpm/elements with thickness and axes for them",
+               id, all);
 }
 
-/* ----------------------------------------------------------------------
-   ranges of validity: each rank notes the first step in which one of its points is outside;
-   ranks compare notes only when they talk to each other anyway
-------------------------------------------------------------------------- */
-
+/** Ranges of validity: each rank notes the first step in which one of its points is outside; ranks
+ *  compare notes only when they talk to each other anyway. */
 void FixMPMMaterial::watch_ranges(const Batch &b, int first)
 {
   double value[BATCH];
@@ -139,10 +127,7 @@ void FixMPMMaterial::watch_ranges(const Batch &b, int first)
   }
 }
 
-/* ----------------------------------------------------------------------
-   one warning for each range that was left, the same for any number of ranks
-------------------------------------------------------------------------- */
-
+/** One warning for each range that was left, the same for any number of ranks. */
 void FixMPMMaterial::report_exits()
 {
   if (!watching) return;
@@ -174,10 +159,7 @@ void FixMPMMaterial::report_exits()
   }
 }
 
-/* ----------------------------------------------------------------------
-   mass of the points that have none yet; masses that were set or read stay
-------------------------------------------------------------------------- */
-
+/** Mass of the points that have none yet; masses that were set or read stay. */
 void FixMPMMaterial::assign_mass()
 {
   const double *const vfrac = atom->vfrac;
@@ -191,8 +173,6 @@ double FixMPMMaterial::density(int i) const
 {
   return material->density(history ? history[i] : nullptr);
 }
-
-/* ---------------------------------------------------------------------- */
 
 int FixMPMMaterial::find_history(const std::string &name) const
 {
@@ -210,11 +190,8 @@ std::string FixMPMMaterial::names() const
   return text.empty() ? " none" : text;
 }
 
-/* ----------------------------------------------------------------------
-   The ledger wants to know the work of the stress. Laws have their own account of the energy; the
-   two agree to third order in the strain of a step
-------------------------------------------------------------------------- */
-
+/** The ledger wants to know the work of the stress. Laws have their own account of the energy; the
+ *  two agree to third order in the strain of a step. */
 void FixMPMMaterial::update_batch(Batch &b, const BatchKernels &kernels, const double *heat)
 {
   for (int p = 0; p < b.n; p++) b.heat[p] = heat ? heat[p] : 0.0;
@@ -232,10 +209,7 @@ void FixMPMMaterial::update_batch(Batch &b, const BatchKernels &kernels, const d
   }
 }
 
-/* ----------------------------------------------------------------------
-   work so far, summed over ranks, and what the history variables are
-------------------------------------------------------------------------- */
-
+/** Work so far, summed over ranks, and what the history variables are. */
 void FixMPMMaterial::write_restart(FILE *fp)
 {
   double list[3 + NWORK];
@@ -253,10 +227,7 @@ void FixMPMMaterial::write_restart(FILE *fp)
   fwrite(text.c_str(), 1, text.size() + 1, fp);
 }
 
-/* ----------------------------------------------------------------------
-   rank 0 goes on with the total
-------------------------------------------------------------------------- */
-
+/** Rank 0 goes on with the total. */
 void FixMPMMaterial::restart(char *buf)
 {
   double list[3 + NWORK];

@@ -6,15 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// First values of affine matrices come from the velocities of the points. A point that has not
-// moved yet has no affine matrix, and those of points whose velocities were changed by a command
-// between runs belong to the motion before. With zero in their place, the first step would take a
-// part of the energy of a rotation (2 % for a disk of 10 cells). The matrix of a point is the slope
-// of the velocities around it, by least squares weighted with mass and shape functions: with the
-// mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
+// First values of affine matrices are slopes of the velocities around a point, by least squares:
+// with the mean at node i, <.>_i = sum_p m_p N_i(x_p) . / m_i,
 //   C = [sum_i N_i m_i <(v - <v>_i) (x - <x>_i)>_i] [sum_i N_i m_i <(x - <x>_i) (x - <x>_i)>_i]^+.
-// It is exact for fields that vary linearly, also at the surface of a body. Directions in which the
-// points around have no extent get no slope (pseudo-inverse).
+// It is exact for linear fields. With zero, the first step would take a part of the energy of a
+// rotation (2 % for a disk of 10 cells).
 
 #include "field/mpm_affine.h"
 
@@ -42,8 +38,6 @@ using namespace MPM_NS;
 
 // mean square distance of points around a node, in node spacings squared, that allows for a slope
 static constexpr double MIN_EXTENT = 1.0e-4;
-
-/* ---------------------------------------------------------------------- */
 
 MPMAffine::MPMAffine(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
     Pointers(lmp), field(field)
@@ -73,8 +67,6 @@ uint64_t MPMAffine::velocity_hash() const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMAffine::check_velocities()
 {
   if (!velocities.known || velocity_hash() == velocities.hash) return;
@@ -85,8 +77,6 @@ void MPMAffine::check_velocities()
     }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMAffine::fit()
 {
   int mine = 0, all;
@@ -95,7 +85,6 @@ void MPMAffine::fit()
   if (!all) return;
 
   // at rest, or all with one velocity: spares the sums below, which are the peak of memory
-
   double range[6], range_all[6];    // largest velocity, and largest with the opposite sign
   for (double &r : range) r = -DBL_MAX;
   for (int i = 0; i < atom->nlocal; i++)
@@ -137,7 +126,6 @@ void MPMAffine::fit()
   field.nodes.complete(sums.data(), NREAL, NREAL);
 
   // about the means
-
   for (double *s = sums.data(); s < sums.data() + sums.size(); s += NREAL) {
     if (s[M] <= 0.0) continue;
     for (int a = 0, k = 0; a < dim; a++) {
@@ -177,12 +165,9 @@ void MPMAffine::fit()
     }
 }
 
-/* ----------------------------------------------------------------------
-   torques that pair styles exert on points (tangential forces act on the surface of a point) change
-   the angular momentum of its affine field, m D (C - C^T), D = h^2/4 or h^2/3; in the total frame
-   m D (C F^T - F C^T)
-------------------------------------------------------------------------- */
-
+/** Torques that pair styles exert on points (tangential forces act on the surface of a point)
+ *  change the angular momentum of its affine field, m D (C - C^T), D = h^2/4 or h^2/3; in the total
+ *  frame m D (C F^T - F C^T). */
 bool MPMAffine::takes_torques() const
 {
   const Shape shape = field.options.shape;
@@ -221,14 +206,11 @@ void MPMAffine::add_torques()
     }
 }
 
-/* ----------------------------------------------------------------------
-   What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where
-   < > are means with the shape functions N_ip over the places r of nodes from the point, and F is
-   that of the total frame, else 1. <r r> is D in the moving least squares form; with other
-   functions it depends on where the point is in its cell. Bilinear modes (PolyPIC) have none, as
-   products of coordinates are orthogonal to linear functions.
-------------------------------------------------------------------------- */
-
+/** What nodes get of the affine field has the angular momentum m <F r x C r> about the point, where
+ *  < > are means with the shape functions N_ip over the places r of nodes from the point, and F is
+ *  that of the total frame, else 1. <r r> is D in the moving least squares form; with other
+ *  functions it depends on where the point is in its cell. Bilinear modes (PolyPIC) have none, as
+ *  products of coordinates are orthogonal to linear functions. */
 void MPMAffine::angular_momentum(int i, double L[3]) const
 {
   L[0] = L[1] = L[2] = 0.0;
@@ -236,7 +218,6 @@ void MPMAffine::angular_momentum(int i, double L[3]) const
   const int dim = field.lattice.dim;
 
   // the functions at the point or, of domains, at their corners
-
   int ncorner = 1;
   double corner[24] = {0.0}, share[8] = {1.0}, size[3];
   if (field.domains) {

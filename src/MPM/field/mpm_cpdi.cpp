@@ -6,13 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Points of fix mpm that have a size: boxes along the axes (gimp and cpgimp), and domains (cpdi and
-// cpdi2), see transfer/cpdi.h.
-//
-// Domains of cpdi are made from F in each step, half edges F r_0; those of cpdi2 are corners that
-// move with the nodes' velocities. Domains stay the same throughout a step. A tile has the
-// neighbors of its block on all sides, but only those blocks are active that corners can reach
-// soon: whether they still do is checked at the start of each step.
+// Domains of cpdi have the half edges F r_0; those of cpdi2 are corners that move with the nodes.
+// Only those blocks are active that corners can reach soon, which each step checks.
 
 #include "field/mpm_cpdi.h"
 
@@ -43,21 +38,14 @@ static constexpr double MAX_SIZE = 0.5;
 // of the places of corners, in node spacings
 static constexpr double ROUND_OFF = 1.0e-9;
 
-/* ---------------------------------------------------------------------- */
-
 double LAMMPS_NS::half_size(const MPMField &field, int i)
 {
   const double section = field.frame->section(i);
   return 0.5 * (field.lattice.dim == 3 ? cbrt(section) : sqrt(section)) / field.lattice.h;
 }
 
-/* ----------------------------------------------------------------------
-   Sizes stay the same throughout a step. At the start a point is a box of its volume. A contiguous
-   one follows F: what was a box of half sizes l has the second moments F diag(l^2) F^T/3, along
-   axis d those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. Without shear and
-   rotation this is F_dd l_d, and a cube that just turns keeps its size.
-------------------------------------------------------------------------- */
-
+/** A contiguous box of half sizes l has the second moments F diag(l^2) F^T/3, which along axis d
+ *  are those of an interval with the half size [sum_e (F_de l_e)^2]^1/2. */
 void MPMBoxes::update()
 {
   sizes.resize(3 * (std::size_t) atom->nmax, MAX_SIZE);
@@ -83,12 +71,9 @@ void MPMBoxes::size_of(int i, double *size) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   a ring has its initial size at x/F_zz, which is its initial radius until it moves only: with
-   stress apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any
-   more
-------------------------------------------------------------------------- */
-
+/** A ring has its initial size at x/F_zz, which is its initial radius until it moves only: with
+ *  stress apart from the motion (scheme) or averages of strain (locking), F_zz is not quite r/R any
+ *  more. */
 bool MPMBoxes::is_too_large(int i) const
 {
   const bool waits = field.every && field.every->displacement(i, 0) != 0.0;
@@ -106,8 +91,6 @@ double MPMBoxes::smallest() const
     if (field.is_point(i)) least = std::min(least, half_size(field, i));
   return least;
 }
-
-/* ---------------------------------------------------------------------- */
 
 MPMCpdi::MPMCpdi(LAMMPS *lmp, MPMField &field, MPMPointState &state) : Pointers(lmp), field(field)
 {
@@ -197,8 +180,6 @@ template <int DIM> static void reach_of_corners(const double *x, double *low, do
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 double MPMCpdi::corners_of(int i, double *x, double *w, double *g) const
 {
   const int n = 1 << field.lattice.dim;
@@ -227,11 +208,8 @@ void MPMCpdi::reach(int i, double low[3], double high[3]) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   a corner may be one block side less one cell away from its point, or else it may be beyond the
-   tile wherever the point is in its block; one that is nowhere is at no distance
-------------------------------------------------------------------------- */
-
+/** A corner may be one block side less one cell away from its point, or else it may be beyond the
+ *  tile wherever the point is in its block; one that is nowhere is at no distance. */
 void MPMCpdi::limit(int i)
 {
   const int room = field.grid.side - 1;
@@ -248,16 +226,13 @@ void MPMCpdi::limit(int i)
   field.guard->point_is_bad(
       i, fmt::format("has a domain with a corner {:.4g} node spacings away", far),
       "it is made smaller",
-      fmt::format(
-          ", the limit is {}: use smaller points or a larger node spacing; with fix mpm ... bad "
-          "warn the domain is made smaller, with bad delete the point is removed",
-          room));
+      fmt::format(", the limit is {}: use smaller points or a larger node spacing; with fix mpm "
+                  "... bad warn the domain is made smaller, with bad delete the point is removed",
+                  room));
   if (!std::isfinite(far)) far = make_undeformed(i);
   const double scale = std::min(1.0, limit / far);
   for (int k = 0; k < size(); k++) domain[k] *= scale;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMCpdi::check_corners()
 {
@@ -271,8 +246,6 @@ void MPMCpdi::check_corners()
     if (field.options.bad == MPMFieldOptions::WARN) corners_of_box(i, corners[i]);
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMCpdi::update()
 {
@@ -338,11 +311,8 @@ void MPMCpdi::update()
   warned = true;
 }
 
-/* ----------------------------------------------------------------------
-   points have corners if create_points elements gave them or the fix has moved them before; they go
-   with the fix, when it is defined again
-------------------------------------------------------------------------- */
-
+/** Points have corners if create_points elements gave them or the fix has moved them before; they
+ *  go with the fix, when it is defined again. */
 void MPMCpdi::tell_of_boxes(bigint nboxes, bigint ndeformed)
 {
   const bigint mine[2] = {nboxes, ndeformed};
@@ -354,8 +324,7 @@ void MPMCpdi::tell_of_boxes(bigint nboxes, bigint ndeformed)
   if (all[1])
     error->warning(
         FLERR,
-        "Fix mpm {} shape cpdi2: {} of these points have been deformed before: domains "
-        "that they had, with a fix mpm that is gone, are lost, and become boxes with the "
-        "deformation F",
+        "Fix mpm {} shape cpdi2: {} of these points have been deformed before: domains that they "
+        "had, with a fix mpm that is gone, are lost, and become boxes with the deformation F",
         field.id(), all[1]);
 }

@@ -6,14 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Grains and atoms that need a smaller time step take several under one of the material points.
-//
-// Between two steps of the cycle, points move with their constant velocity, so that what they touch
-// sees them move smoothly, and their forces add up. The cycle then starts from where they were in
-// the middle of these steps, with the mean of the forces: it gives them the impulse that they have
-// received, to round-off. On a linear spring this mean is the force at the middle, and K steps are
-// one of leapfrog, which keeps the energy; with the place at their start they would be damped, by a
-// part (K - 1)/(2 K) (omega dt)^2 of the energy in each step dt of the cycle.
+// Grains and atoms may take several steps under one of the material points. Between two steps of
+// the cycle points move with constant velocity, and their forces add up. The cycle starts from
+// where they were in the middle of these steps, with the mean of the forces, which keeps the energy
+// of a spring as leapfrog does: from the place at their start, (K - 1)/(2 K) (omega dt)^2 of it
+// would be lost.
 
 #include "field/mpm_every.h"
 
@@ -23,18 +20,13 @@
 
 using namespace LAMMPS_NS;
 
-/* ---------------------------------------------------------------------- */
-
 MPMEvery::MPMEvery(LAMMPS *lmp, MPMField &field, MPMPointState &state) : Pointers(lmp), field(field)
 {
   state.declare(waiting, "mpm:waiting", width());
 }
 
-/* ----------------------------------------------------------------------
-   add forces, and move the points on, or to their place on the lattice when it is time for the
-   cycle. Points that have not waited before are where they are at the start of these steps
-------------------------------------------------------------------------- */
-
+/** Add forces, and move the points on, or to their place on the lattice when it is time for the
+ *  cycle. Points that have not waited before are where they are at the start of these steps. */
 bool MPMEvery::wait()
 {
   const int every = field.options.every;
@@ -70,11 +62,8 @@ bool MPMEvery::wait()
   return progress.waited < every;
 }
 
-/* ----------------------------------------------------------------------
-   from their new place on the lattice, which they pass in the middle of the next forces to be added
-   up, to where they are when the first of these acts
-------------------------------------------------------------------------- */
-
+/** From their new place on the lattice, which they pass in the middle of the next forces to be
+ *  added up, to where they are when the first of these acts. */
 void MPMEvery::finish()
 {
   const double before = 0.5 * (progress.elapsed - update->dt);
@@ -90,10 +79,7 @@ void MPMEvery::finish()
   progress = {};
 }
 
-/* ----------------------------------------------------------------------
-   it has left points on the lattice or near to it: they go on from there like new ones
-------------------------------------------------------------------------- */
-
+/** It has left points on the lattice or near to it: they go on from there like new ones. */
 void MPMEvery::forget_broken_step()
 {
   if (progress.waited < field.options.every) return;

@@ -10,24 +10,25 @@
 
 #include "atom.h"
 #include "base/mpm_points.h"
+#include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_cpdi.h"
-#include "field/mpm_edges.h"
 #include "field/mpm_every.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_node_action.h"
+#include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_smoothing.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
-#include "field/mpm_watch.h"
 #include "force.h"
 #include "material/batch_kernels.h"
 #include "modify.h"
@@ -48,8 +49,6 @@ static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMField
   std::copy_n(options.origin, lattice.dim, lattice.origin);
   return lattice;
 }
-
-/* ---------------------------------------------------------------------- */
 
 MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMPointState &state) :
     Pointers(lmp), chosen(options), fix(fix), grid(lattice_of(*domain, h, options)),
@@ -72,8 +71,6 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
 
 MPMField::~MPMField() = default;
 
-/* ---------------------------------------------------------------------- */
-
 std::vector<MPMField *> MPMField::all(LAMMPS *lmp)
 {
   std::vector<MPMField *> list;
@@ -87,18 +84,16 @@ MPMField *MPMField::find(LAMMPS *lmp, const std::string &id)
   return ifix ? ifix->field.get() : nullptr;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMField::check_box()
 {
   if (domain->triclinic) error->all(FLERR, "Fix mpm requires an orthogonal box");
   for (int d = 0; d < lattice.dim; d++) {
     const char axis = 'x' + d;
     if (domain->boundary[d][0] > 1 || domain->boundary[d][1] > 1)
-      error->all(FLERR,
-                 "Fix mpm requires periodic or fixed boundaries (p or f), "
-                 "but axis {} is shrink-wrapped",
-                 axis);
+      error->all(
+          FLERR,
+          "Fix mpm requires periodic or fixed boundaries (p or f), but axis {} is shrink-wrapped",
+          axis);
     const double length = domain->prd[d];
     if (lattice.h > length * (1.0 + 1.0e-10))
       error->all(FLERR, "Fix mpm node spacing {} is larger than the box length {} along {}",
@@ -107,22 +102,22 @@ void MPMField::check_box()
         MAX(fabs(domain->boxlo[d] - lattice.origin[d]), fabs(domain->boxhi[d] - lattice.origin[d]));
     if (!(far < MAX_NODE * lattice.h))
       error->all(FLERR,
-                 "Fix mpm node spacing {} is too small for the box length {} along {}, or "
-                 "its origin {} is too far away: there can be {:.0f} nodes between them",
+                 "Fix mpm node spacing {} is too small for the box length {} along {}, or its "
+                 "origin {} is too far away: there can be {:.0f} nodes between them",
                  lattice.h, length, axis, lattice.origin[d], MAX_NODE);
     lattice.periodic[d] = domain->periodicity[d] != 0;
     lattice.ncell[d] = MAX(1, (int) std::lround(length / lattice.h));
     if (lattice.periodic[d] && fabs(lattice.ncell[d] * lattice.h - length) > 1.0e-10 * length)
       error->all(FLERR,
-                 "Length {} of the box along periodic axis {} must be a multiple of the "
-                 "node spacing {}: the nearest valid spacing is {:.16g}",
+                 "Length {} of the box along periodic axis {} must be a multiple of the node "
+                 "spacing {}: the nearest valid spacing is {:.16g}",
                  length, axis, lattice.h, length / lattice.ncell[d]);
     if (options.shape == BERNSTEIN && lattice.periodic[d] && lattice.ncell[d] % 2)
-      error->all(FLERR,
-                 "Fix mpm shape bernstein has cells of two node spacings, but there are {} "
-                 "spacings along periodic axis {}: use an even number, for instance a spacing of "
-                 "{:.16g}",
-                 lattice.ncell[d], axis, length / (lattice.ncell[d] + 1));
+      error->all(
+          FLERR,
+          "Fix mpm shape bernstein has cells of two node spacings, but there are {} spacings along "
+          "periodic axis {}: use an even number, for instance a spacing of {:.16g}",
+          lattice.ncell[d], axis, length / (lattice.ncell[d] + 1));
   }
   if (options.axisymmetric && (domain->boxlo[0] < 0.0 || domain->periodicity[0]))
     error->all(FLERR,
@@ -130,8 +125,6 @@ void MPMField::check_box()
                "below x = 0 or be periodic along x");
   if (nodes.edges) nodes.edges->check();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMField::init(MPMPlan *plan_of_all)
 {
@@ -155,7 +148,6 @@ void MPMField::init(MPMPlan *plan_of_all)
   if (heating) heating->init();
 
   // the same instruction set for transfers, batches and laws
-
   static const char *const sets[] = {nullptr, "reference", "baseline", "avx2", "avx512"};
   const char *wanted = sets[options.kernels];
   kernels = MPMKernels::select(wanted);
@@ -178,13 +170,8 @@ void MPMField::find_materials()
   work.history.resize((std::size_t) nhistory * BATCH);
 }
 
-/* ----------------------------------------------------------------------
-   Velocities of nodes that were mapped back have contact decided by those of the step, and no
-   impulse of their own. When points moved with them, a tool without friction that was drawn through
-   a body felt nearly twice its force, and a cone that is a separating wall 5 % too little at 1.2
-   cells of depth
-------------------------------------------------------------------------- */
-
+/** Velocities that were mapped back have contact decided by those of the step, and no impulse of
+ *  their own: points that moved with them felt wrong forces (step/DECISIONS.md). */
 static bool is_in_contact(const MPMField &field)
 {
   const auto actions = find_fixes<MPMNodeAction>(field.lmp);
@@ -193,12 +180,9 @@ static bool is_in_contact(const MPMField &field)
   });
 }
 
-/* ----------------------------------------------------------------------
-   Long records of nodes keep forces and old velocities apart: the ledger and some node actions need
-   them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves
-   domains with velocities that were mapped back, knows long records only
-------------------------------------------------------------------------- */
-
+/** Long records of nodes keep forces and old velocities apart: the ledger and some node actions
+ *  need them, USF and USAVG sum forces alone; the kernel that interpolates the hoop rate, and moves
+ *  domains with velocities that were mapped back, knows long records only. */
 void MPMField::choose_kernels()
 {
   const bool split = ledger.on || keep_old || keep_old_now || options.heat ||
@@ -233,8 +217,6 @@ void MPMField::keep_old_velocities_now(bool yes)
   choose_kernels();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMField::count_step()
 {
   auto &counts = counts_of_run;
@@ -244,8 +226,6 @@ void MPMField::count_step()
   counts.steps++;
   counts.point_steps += map->npoints();
 }
-
-/* ---------------------------------------------------------------------- */
 
 const char *MPMField::id() const
 {
@@ -271,8 +251,6 @@ FixMPMMaterial *MPMField::material_of(int i) const
   return nullptr;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double MPMField::step_dt() const
 {
   return every ? every->step_dt() : update->dt;
@@ -282,8 +260,6 @@ int MPMField::steps_to_next() const
 {
   return every ? every->steps_to_next() : 1;
 }
-
-/* ---------------------------------------------------------------------- */
 
 PointRows MPMField::rows() const
 {
@@ -308,7 +284,6 @@ PointRows MPMField::rows_at_rest(double *values, const double *weights)
 {
   // a value of a node that is not finite moves points even in no time, and the next transfer would
   // look for their nodes; they stay where they are until the guard has seen the velocity
-
   work.places.resize(3 * (std::size_t) atom->nmax);
   PointRows r = rows();
   r.v = values;
@@ -350,8 +325,6 @@ double MPMField::memory_usage() const
   return bytes;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void LAMMPS_NS::refuse_field(LAMMPS *lmp, const Fix &user, const MPMField &field,
                              const OptionRules &rules)
 {
@@ -365,4 +338,60 @@ void LAMMPS_NS::refuse_field(LAMMPS *lmp, const std::string &user, const MPMFiel
     if (rule.broken)
       lmp->error->all(FLERR, Error::NOLASTLINE, "{} cannot be used with {} of fix mpm {}: {}", user,
                       rule.keyword, field.id(), rule.text);
+}
+
+// What makes forces of stress where the input leaves it open (keyword stress of fix mpm)
+
+/** Does it, or another lattice of the same body, touch other bodies by a node action? */
+bool MPMField::has_contact() const
+{
+  const auto contacts = find_fixes<MPMNodeAction>(lmp);
+  const auto bodies = find_fixes<MPMRefinedBody>(lmp);
+  const auto list = MPMField::all(lmp);
+  return std::any_of(list.begin(), list.end(), [&](const MPMField *field) {
+    const bool mine = field == this || std::any_of(bodies.begin(), bodies.end(), [&](auto *body) {
+                        return body->has(id()) && body->has(field->id());
+                      });
+    return mine && std::any_of(contacts.begin(), contacts.end(), [field](auto *contact) {
+             return contact->touches(field->id());
+           });
+  });
+}
+
+/** Fixes can be defined in any order, and come and go between runs: this is found anew for each
+ *  run. Where bodies touch, edges give way more with gradients, and pressures of pore water
+ *  scatter more. */
+void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
+{
+  const bool alone = !has_contact() && find_fixes<MPMPorePressure>(lmp).empty();
+  const auto who = std::find_if(all.begin(), all.end(), [&](const auto *physics) {
+    return alone && physics->brings_to_rest();
+  });
+  const bool before = options.strains_by_gradient();
+  chosen.rests = who != all.end();
+  if (options.strains_by_gradient() == before || comm->me) return;
+  if (before) {
+    utils::logmesg(lmp, "Fix mpm {}: stress mls again, the default {}\n", id(),
+                   alone ? "of steps that do not bring bodies to rest"
+                         : "with fix mpm/contact and fix mpm/pore");
+    return;
+  }
+  const auto *const other = dynamic_cast<Fix *>(*who);
+  utils::logmesg(lmp, "Fix mpm {}: stress gradient, the default with fix {} {}\n", id(),
+                 other->style, other->id);
+}
+
+void MPMJacobians::keep(const BatchKernels &kernels, const Batch &batch, int first, int nmax)
+{
+  if (J.size() < (std::size_t) nmax) J.resize(nmax);
+  kernels.jacobians(batch.F, batch.n, J.data() + first);
+  known = true;
+}
+
+void MPMJacobians::find(const MPMField &field, int first, int n, double *J)
+{
+  double F[9][BATCH];
+  for (int p = 0; p < n; p++)
+    for (int c = 0; c < 9; c++) F[c][p] = field.points->F[first + p][c];
+  field.batch_kernels->jacobians(F, n, J);
 }

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_FIELD_H
 #define LMP_MPM_FIELD_H
 
-#include "base/mpm_cycle.h"
+#include "base/mpm_step_limit.h"
 #include "field/mpm_field_options.h"
 #include "field/mpm_jacobians.h"
 #include "field/mpm_ledger.h"
@@ -52,29 +52,10 @@ struct MPMPoints;
 /** One velocity field on one lattice: options, points, nodes, and an object for each feature that
  *  only some options need. */
 class MPMField : protected Pointers {
-  MPMFieldOptions chosen;
-
-  bool running = false;
-  bool keep_old = false, keep_old_now = false;
-  bool motion_is_done = false;
-  std::vector<double> late_positions;
-  double last_dt = 0.0;
-
- public:
-  /** Counts and time steps of the present run. */
-  struct Counts {
-    bigint steps = 0;
-    double point_steps = 0.0, dt_min = 0.0, dt_max = 0.0;
-  };
-
- private:
-  Counts counts_of_run;
-
-  bool has_contact() const;
+  MPMFieldOptions chosen;    // before all that reads them
 
  public:
   using Options = MPMFieldOptions;
-
   using Pointers::atom;
   using Pointers::lmp;
 
@@ -184,6 +165,11 @@ class MPMField : protected Pointers {
   void begin_run() { running = true; }
   void end_run() { running = false; }
   bool is_running() const { return running; }
+  /** Counts and time steps of the present run. */
+  struct Counts {
+    bigint steps = 0;
+    double point_steps = 0.0, dt_min = 0.0, dt_max = 0.0;
+  };
   void start_counting() { counts_of_run = {0, 0.0, step_dt(), step_dt()}; }
   /** End of a step of the cycle. */
   void count_step();
@@ -211,6 +197,15 @@ class MPMField : protected Pointers {
   void set_moved(bool yes) { motion_is_done = yes; }
 
   double memory_usage() const;
+
+ private:
+  bool running = false, motion_is_done = false;
+  bool keep_old = false, keep_old_now = false;
+  double last_dt = 0.0;
+  std::vector<double> late_positions;
+  Counts counts_of_run;
+
+  bool has_contact() const;
 };
 
 /** Owner of a field. Implemented by fix mpm. */

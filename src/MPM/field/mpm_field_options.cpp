@@ -158,7 +158,6 @@ Options MPMFieldOptions::declare(int dim)
       "instruction set of the transfers and the materials");
 
   // what does not go together
-
   const auto amplifies = [this] {
     return changes_cells() && shape == LINEAR && (scheme == USL || is_affine(transfer));
   };
@@ -174,8 +173,8 @@ Options MPMFieldOptions::declare(int dim)
         {!has_size(), "aspect",
          "is for points of finite size: use shape gimp, cpgimp, cpdi or cpdi2"},
         {total && (has_size() || transfer == AFLIP || transfer == TPIC), "frame",
-         "total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, which points that cross "
-         "no cells do not need, and transfer aflip and tpic: use B-splines with transfer apic or "
+         "total cannot be used with shape gimp, cpgimp, cpdi and cpdi2, which points that cross no "
+         "cells do not need, and transfer aflip and tpic: use B-splines with transfer apic or "
          "flip"},
         {polypic && (total || !is_mls(shape, transfer)), "transfer",
          "polypic needs shape quadratic or cubic and frame updated"},
@@ -190,8 +189,8 @@ Options MPMFieldOptions::declare(int dim)
          "edges",
          "modified is for shape quadratic and cubic with transfer pic and flip: use edges plain"},
         {shape == BERNSTEIN && !total, "shape",
-         "bernstein has gradients that jump where points cross cells: it needs frame total, "
-         "where they do not, or use shape quadratic"},
+         "bernstein has gradients that jump where points cross cells: it needs frame total, where "
+         "they do not, or use shape quadratic"},
         {series == FMPM && scheme != USL, "transfer",
          "fmpm moves points with refined velocities, which the gradients of scheme usf, musl and "
          "usavg do not follow: use scheme usl, or transfer xpic"},
@@ -220,7 +219,6 @@ Options MPMFieldOptions::declare(int dim)
   });
 
   // what is likely to be a mistake
-
   o.warn([=] {
     return OptionRules{
         {series == XPIC && order > 1 && scheme != USL, "transfer",

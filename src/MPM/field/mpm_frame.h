@@ -10,7 +10,7 @@
 #define LMP_MPM_FRAME_H
 
 #include "atom.h"
-#include "base/mpm_rows.h"
+#include "base/mpm_points.h"
 #include "field/mpm_field.h"
 #include "math/matrix.h"
 
@@ -20,7 +20,7 @@ namespace LAMMPS_NS {
 
 /** The configuration that the nodes belong to, and the strain of points in it. This class is the
  *  updated Lagrangian frame, in which nodes are places in space. Other frames derive from it; the
- *  frame of an axis of symmetry wraps another frame, see mpm_frame_axisymmetric.cpp.
+ *  frame of an axis of symmetry wraps another frame.
  *
  *  Functions with a range of points are called once for each batch. */
 class MPMFrame : protected Pointers {
@@ -117,7 +117,7 @@ class MPMFrame : protected Pointers {
   /** Deformation gradient with respect to the places of the lattice. */
   virtual void lattice_F(int i, double F[3][3]) const;
   /** Ratio of the volume at the places of the lattice to the initial volume. */
-  virtual double lattice_jacobian(int i) const;
+  virtual double lattice_jacobian(int i) const { return field.points->jacobian(i); }
 
   /** Speed that a point with the wave speed c has with respect to the stability limit (it must not
    *  cross a cell in a step). c may be raised. If the speed does not exceed a known one, the result
@@ -154,6 +154,40 @@ class MPMFrame : protected Pointers {
 
  private:
   std::vector<double> across;    // [n] A_zz from stretch()
+};
+
+/** Total Lagrangian frame: nodes are places of a reference configuration, which may be updated. */
+class MPMFrameTotal : public MPMFrame {
+ public:
+  MPMRows X;    ///< [n][3] reference position, NAN before it is known
+  /** [n][9] F at the last update of the reference, row-major; null: no updates. */
+  MPMRows R;
+
+  MPMFrameTotal(class LAMMPS *, MPMField &, MPMPointState &);
+
+  void setup() override;
+  bool renew_places() override;
+  void end_of_step() override;
+  bool is_total() const override { return true; }
+  MPMRows places() const override { return X; }
+  bool changes_forces() const override { return true; }
+  void forces(MPM_NS::PointRows &, int first, int n, ForceRows &) const override;
+  void shift_gradients(int, double, double *) const override {}
+  bool refers() const override { return R || mean_rate; }
+  void refer_gradients(int first, int n, double *L) const override;
+  double volume_change(int i, const double *L, double dt) const override;
+  void lattice_F(int i, double F[3][3]) const override;
+  double lattice_jacobian(int i) const override { return R ? MPMPoints::det(R[i]) : 1.0; }
+  double speed(int i, double &c, double known) const override;
+  double radius(int i, double x) const override;
+  void start_counting() override { nupdate = 0; }
+  std::string report() const override;
+
+ private:
+  bigint nupdate = 0;         // updates of the reference in this run
+  bool refer_anew = false;    // the present configuration is to become the reference
+
+  void stretches(int i, double &smallest, double &largest) const;
 };
 
 }    // namespace LAMMPS_NS

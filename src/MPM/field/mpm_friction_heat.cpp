@@ -6,40 +6,31 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   The kinetic energy of a node changes in a step by all impulses on it times the mean of its old
-   and its new velocity. The part of a tangential impulse J_t between bodies of relative velocity u
-   is J_t . (u_old + u_new)/2, and what slides loses that as heat, exactly. With the velocities just
-   before and after the impulse it would be more: before it, the shear stress has accelerated the
-   node, by tau dt/(rho h), which is not small against the sliding velocity in stiff bodies, and
-   which friction takes back in each step. Where bodies stick there is no heat: what is lost there
-   is numerical, and of the order of the step.
-------------------------------------------------------------------------- */
-
 #include "field/mpm_friction_heat.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
-#include "field/mpm_conductivity.h"
 #include "field/mpm_field.h"
-#include "field/mpm_heat_sink.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_passes.h"
 #include "fix.h"
 #include "force.h"
 #include "material/material.h"
+#include "math_extra.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
+/* A tangential impulse J_t between bodies of relative velocity u takes the kinetic energy
+ *  J_t . (u_old + u_new)/2 from the nodes, which is the heat where the bodies slide. */
 
 void MPMFrictionHeatOptions::declare(Options &o, const char *yes, const char *first)
 {
@@ -60,8 +51,6 @@ MPMFrictionHeat::MPMFrictionHeat(LAMMPS *lmp, const MPMFrictionHeatOptions &opti
 {
 }
 
-/* ---------------------------------------------------------------------- */
-
 /** Is an axis neither in the plane nor normal to it? */
 static bool leaves_plane(const Conduction &c)
 {
@@ -78,11 +67,10 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
 {
   const auto sinks = find_fixes<MPMHeatSink>(lmp);
   if (sinks.empty())
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix {} {} heat: nothing conducts the heat of friction: define a fix mpm/heat, or drop "
-        "the keyword",
-        user.style, user.id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {} heat: nothing conducts the heat of friction: define a fix mpm/heat, or "
+               "drop the keyword",
+               user.style, user.id);
   sink = sinks[0];
   bodies.clear();
   bool any = false, points = false;
@@ -102,11 +90,10 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
       if (!material.conducts()) continue;
       const Conduction c = material.conduction(nullptr);
       if (c.orthotropic && domain->dimension == 2 && leaves_plane(c))
-        error->all(
-            FLERR, Error::NOLASTLINE,
-            "Fix {} {} heat: in 2d, an axis of the conductivity of fix mpm/material {} must be "
-            "normal to the plane: choose other axes",
-            user.style, user.id, field->materials[k]->id);
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix {} {} heat: in 2d, an axis of the conductivity of fix mpm/material {} must "
+                   "be normal to the plane: choose other axes",
+                   user.style, user.id, field->materials[k]->id);
       nconducting++;
       body.orthotropic = body.orthotropic || c.orthotropic;
       body.mixed = body.mixed || material.conduction_varies();
@@ -118,11 +105,10 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
     bodies.push_back(body);
   }
   if (points && !any)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix {} {} heat: no material of its bodies conducts heat: give a fix mpm/material the "
-        "part 'thermal conducting', or drop the keyword",
-        user.style, user.id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {} heat: no material of its bodies conducts heat: give a fix mpm/material "
+               "the part 'thermal conducting', or drop the keyword",
+               user.style, user.id);
 }
 
 void MPMFrictionHeat::begin_step()
@@ -196,8 +182,6 @@ void MPMFrictionHeat::map_tensor(Body &body)
               });
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::size_t MPMFrictionHeat::node_of(const Body &body, const double *record) const
 {
   const Grid &grid = body.field->grid;
@@ -260,4 +244,37 @@ double MPMFrictionHeat::memory_usage() const
   double bytes = (values.capacity() + weights.capacity()) * sizeof(double);
   for (const auto &body : bodies) bytes += body.at_node.capacity() * sizeof(double);
   return bytes;
+}
+
+/** The rotation R of F = R U, by R <- (R + R^-T)/2 (N.J. Higham, SIAM J. Sci. Stat. Comput. 7
+ *  (1986) 1160). */
+static void rotation(const double *F, double R[3][3])
+{
+  static constexpr int MOST = 30;
+  memcpy(R, F, 9 * sizeof(double));
+  for (int k = 0; k < MOST; k++) {
+    double inverse[3][3], change = 0.0;
+    MathExtra::invert3(R, inverse);
+    for (int a = 0; a < 3; a++)
+      for (int b = 0; b < 3; b++) {
+        const double next = 0.5 * (R[a][b] + inverse[b][a]);
+        change = std::max(change, fabs(next - R[a][b]));
+        inverse[b][a] = next;
+      }
+    MathExtra::transpose3(inverse, R);
+    if (change < 1.0e-14) return;
+  }
+}
+
+void LAMMPS_NS::principal_conductivities(const Conduction &c, const double *F, double k[3],
+                                         double n[3][3])
+{
+  k[0] = c.conductivity;
+  for (int a = 1; a < 3; a++) k[a] = c.orthotropic ? c.across[a - 1] : c.conductivity;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) n[a][b] = a == b;
+  if (!c.orthotropic) return;
+  double R[3][3];
+  rotation(F, R);
+  MathExtra::times3_transpose(c.axis, R, n);
 }

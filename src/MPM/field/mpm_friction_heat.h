@@ -10,6 +10,7 @@
 #define LMP_MPM_FRICTION_HEAT_H
 
 #include "declare/option.h"
+#include "material/material.h"
 #include "pointers.h"
 
 #include <vector>
@@ -18,6 +19,12 @@ namespace LAMMPS_NS {
 class Fix;
 class MPMField;
 class MPMHeatSink;
+
+/** Principal conductivities k of a material at a point with the deformation gradient F [9,
+ *  row-major]. The rows of n are their axes, unit vectors in space. All k are the same if the
+ *  material is isotropic. */
+void principal_conductivities(const MPM_NS::Conduction &, const double *F, double k[3],
+                              double n[3][3]);
 
 /** Use of the energy that friction dissipates: keyword heat of contact, walls, and rigid bodies. */
 struct MPMFrictionHeatOptions {

@@ -17,8 +17,6 @@
 #include "field/mpm_point_map.h"
 #include "field/mpm_traffic.h"
 #include "fix.h"
-#include "group.h"
-#include "modify.h"
 #include "neighbor.h"
 #include "output.h"
 #include "thermo.h"
@@ -30,17 +28,13 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
-
 std::string MPMGuard::describe(int i) const
 {
   const double *x = atom->x[i], *v = atom->v[i];
-  return fmt::format("Material point {} at {:.6g} {:.6g} {:.6g} with velocity {:.6g} {:.6g} {:.6g} "
-                     "and J = {:.6g}",
-                     atom->tag[i], x[0], x[1], x[2], v[0], v[1], v[2], field.points->jacobian(i));
+  return fmt::format(
+      "Material point {} at {:.6g} {:.6g} {:.6g} with velocity {:.6g} {:.6g} {:.6g} and J = {:.6g}",
+      atom->tag[i], x[0], x[1], x[2], v[0], v[1], v[2], field.points->jacobian(i));
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &cure,
                             const std::string &hint)
@@ -52,13 +46,10 @@ void MPMGuard::point_is_bad(int i, const std::string &what, const std::string &c
   bad_points.push_back(atom->tag[i]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMGuard::check_positions()
 {
   // nothing can be done with a point whose position is not finite: unless it is deleted, it ends
   // the run as one outside the box
-
   each_point(field, [&](const MPMPointMap::Run &, int i) {
     const double *x = atom->x[i];
     if (std::isfinite(x[0] + x[1] + x[2])) return;
@@ -67,8 +58,6 @@ void MPMGuard::check_positions()
     point_is_bad(i, "has lost its position");
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::handle_bad_points()
 {
@@ -80,8 +69,6 @@ void MPMGuard::handle_bad_points()
   if (!deletes) bad_points.clear();
   if ((all[0] && deletes) || all[1]) field.fix.next_reneighbor = update->ntimestep;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::wrap_far_points()
 {
@@ -100,8 +87,6 @@ void MPMGuard::wrap_far_points()
     if (most > 1.5 && most < LIMIT) domain->remap(atom->x[i], atom->image[i]);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMGuard::check_inside_box()
 {
@@ -126,18 +111,16 @@ void MPMGuard::check_inside_box()
                  describe(i), update->ntimestep);
     else
       error->one(FLERR,
-                 "{} has left the box through a fixed face; enlarge the box, put a "
-                 "fix mpm/boundary there, or let it go with fix mpm ... bad delete",
+                 "{} has left the box through a fixed face; enlarge the box, put a fix "
+                 "mpm/boundary there, or let it go with fix mpm ... bad delete",
                  describe(i));
   }
   if (deletes) delete_points(bad_points, true);
   if (field.options.delete_failed) delete_points(failed_points, false);
 }
 
-/* ----------------------------------------------------------------------
-   LAMMPS reports the number of lost atoms with thermodynamic output, but not which ones are lost
-------------------------------------------------------------------------- */
-
+/** LAMMPS reports the number of lost atoms with thermodynamic output, but not which ones are
+ *  lost. */
 void MPMGuard::tell_lost_atoms() const
 {
   if (atom->natoms <= npoints || output->thermo->lostflag == Thermo::IGNORE) return;
@@ -175,8 +158,6 @@ void MPMGuard::tell_lost_atoms() const
                    state_all[3], state_all[4], state_all[5]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
 {
   std::vector<tagint> sorted;
@@ -194,8 +175,8 @@ void MPMGuard::delete_points(std::vector<tagint> &list, bool warn)
   for (int d = 0; d < 3; d++) deleted.momentum[d] += gone.momentum[d];
   if (warn && comm->me == 0)
     error->warning(FLERR,
-                   "Fix mpm {} deleted {:.0f} points of mass {:.6g} and momentum {:.6g} "
-                   "{:.6g} {:.6g} at step {}",
+                   "Fix mpm {} deleted {:.0f} points of mass {:.6g} and momentum {:.6g} {:.6g} "
+                   "{:.6g} at step {}",
                    field.id(), gone.points, gone.mass, gone.momentum[0], gone.momentum[1],
                    gone.momentum[2], update->ntimestep);
 }

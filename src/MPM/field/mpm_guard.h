@@ -28,12 +28,10 @@ class MPMGuard : protected Pointers {
   /** Position, velocity and volume ratio, for messages. */
   std::string describe(int i) const;
   /** Reports a bad point: stops, or notes it for handle_bad_points(). */
-  void
-  point_is_bad(int i, const std::string &what,
-               const std::string &cure = "it keeps its previous deformation",
-               const std::string &hint =
-                   ": try a smaller time step (fix mpm/dt), more points per cell, or a smoother "
-                   "shape function; fix mpm ... bad warn|delete goes on");
+  void point_is_bad(
+      int i, const std::string &what, const std::string &cure = "it keeps its previous deformation",
+      const std::string &hint = ": try a smaller time step (fix mpm/dt), more points per cell, or "
+                                "a smoother shape function; fix mpm ... bad warn|delete goes on");
   /** Notes a point that has failed and is to be deleted. */
   void point_has_failed(int i) { failed_points.push_back(atom->tag[i]); }
   /** Checks all positions: the kernels must never see one that is not finite. */

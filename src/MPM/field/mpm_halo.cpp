@@ -61,8 +61,6 @@ static int match_keys(int n, char *inbuf, int &flag, int *&proclist, char *&outb
   return nout;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMHalo::setup(Grid &grid, const std::function<bool(const Grid::Block &)> &whole)
 {
   std::vector<uint64_t> wanted;
@@ -81,7 +79,6 @@ void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
   if (comm->nprocs == 1) return;
 
   // all canonical blocks go to the rank that their key hashes to
-
   const int nblocks = grid.blocks.size();
   std::vector<uint64_t> had(nblocks, 0);
   std::vector<Sharer> mine;
@@ -100,7 +97,6 @@ void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
   auto *sharer = (Sharer *) outbuf;
 
   // nodes in order of (rank, key, number): both sides of a pair list them alike
-
   std::sort(sharer, sharer + n, [](const Sharer &a, const Sharer &b) {
     return a.rank < b.rank || (a.rank == b.rank && a.key < b.key);
   });
@@ -125,7 +121,6 @@ void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
 
     // a node is counted by the lowest rank that reaches it, one that nobody reaches by the lowest
     // sharer
-
     uint64_t by_lower = 0, by_others = 0;
     bool lowest = true;
     for (const int i : of_slot[s]) {
@@ -147,7 +142,6 @@ void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
     block.owned &= by_me;
 
     // who adds to a node, in the order of ranks
-
     uint64_t once = 0, more = 0;
     for (const int i : of_slot[s]) {
       more |= once & sharer[i].nodes;
@@ -186,8 +180,6 @@ void MPMHalo::setup(Grid &grid, const std::vector<uint64_t> &wanted,
   memory->sfree(outbuf);
   requests.resize(2 * peers.size());
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Calls f(width), width() being nlane, which the compiler knows for the records of the step. */
 template <class F> static void with_width(int nlane, const F &f)
@@ -249,8 +241,6 @@ void MPMHalo::sum(double *nodes, int nreal, int lane, int nlane)
   }
   MPI_Waitall(npeers, requests.data() + npeers, MPI_STATUSES_IGNORE);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMHalo::memory_usage() const
 {

@@ -9,7 +9,6 @@
 #ifndef LMP_MPM_JACOBIANS_H
 #define LMP_MPM_JACOBIANS_H
 
-#include <cstddef>
 #include <vector>
 
 namespace MPM_NS {

@@ -11,7 +11,7 @@
 #include "atom.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_locking.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
@@ -20,8 +20,6 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/* ---------------------------------------------------------------------- */
 
 void MPMLedger::nodal_kinetic_energies(double &old, double &now) const
 {
@@ -51,8 +49,6 @@ double MPMLedger::point_kinetic_energy() const
   return 0.5 * force->mvv2e * sum;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMLedger::account_for_nodes()
 {
   account_for_forces();
@@ -69,11 +65,8 @@ void MPMLedger::account_for_points()
   kinetic_points = kinetic;
 }
 
-/* ----------------------------------------------------------------------
-   what n points from first on lose to the nodes by their stress, rows.tau: sum of V tau : grad v,
-   with velocities and their gradients L from the nodes
-------------------------------------------------------------------------- */
-
+/** What n points from first on lose to the nodes by their stress, rows.tau: sum of V tau : grad v,
+ *  with velocities and their gradients L from the nodes. */
 double MPMLedger::stress_power(PointRows &rows, int first, int n, const double *L) const
 {
   const int dim = field.lattice.dim, nL = dim * dim;
@@ -102,12 +95,9 @@ double MPMLedger::stress_power(PointRows &rows, int first, int n, const double *
   return power;
 }
 
-/* ----------------------------------------------------------------------
-   work of the forces on points (atom->f) and of their stress, at the mean of the old and the final
-   velocity of the nodes, which go to the points by the weights and gradients with which P2G has
-   brought the forces to the nodes. What elements put on atom->f is internal
-------------------------------------------------------------------------- */
-
+/** Work of the forces on points (atom->f) and of their stress, at the mean of the old and the final
+ *  velocity of the nodes, which go to the points by the weights and gradients with which P2G has
+ *  brought the forces to the nodes. What elements put on atom->f is internal. */
 void MPMLedger::account_for_forces()
 {
   field.nodes.complete_velocities();
@@ -148,8 +138,6 @@ void MPMLedger::account_for_forces()
   internal += unit * (s.stress_scale * stress - s.force_scale * inner);
 }
 
-/* ---------------------------------------------------------------------- */
-
 /** Is there a mass that can take it? */
 bool MPMLedger::change_by(double *record, const double *impulse, double change[3])
 {
@@ -180,11 +168,9 @@ void MPMLedger::drag_node(double *record, bool owned, const double *impulse)
   if (on) note_push(record, change);
 }
 
-/* ----------------------------------------------------------------------
-   The work of the impulse takes the new velocity: that is what moves points. With the mean of the
-   old and the new one it would be the change of kinetic energy; the rest is lost in the collision
-------------------------------------------------------------------------- */
-
+/** The work of the impulse takes the new velocity: that is what moves points. With the mean of the
+ *  old and the new one it would be the change of kinetic energy; the rest is lost in the
+ *  collision. */
 void MPMLedger::count_push(const double *record, const double *change)
 {
   double moved = 0.0, lost = 0.0;
@@ -196,12 +182,9 @@ void MPMLedger::count_push(const double *record, const double *change)
   note_push(record, change);
 }
 
-/* ----------------------------------------------------------------------
-   Where several actions meet at a node, each was counted with the velocity that it left, which the
-   next one changes. The kinetic energy of the node has the mean of its old and its final velocity
-   in all of them: what the change adds to earlier impulses is part of the collision
-------------------------------------------------------------------------- */
-
+/** Where several actions meet at a node, each was counted with the velocity that it left, which the
+ *  next one changes. The kinetic energy of the node has the mean of its old and its final velocity
+ *  in all of them: what the change adds to earlier impulses is part of the collision. */
 double *MPMLedger::impulse(const double *record)
 {
   if (impulses.empty()) impulses.resize(3 * field.grid.nnodes());

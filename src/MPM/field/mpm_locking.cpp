@@ -22,53 +22,19 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ----------------------------------------------------------------------
-   Each point asks for constant volume when a material is all but incompressible, and several
-   points per cell ask for more than the velocities of the nodes can give. Averages through the
-   lattice leave about one such condition for each node. With volumes V and functions N of points,
-
-     S q_p = sum_i N_ip  [sum_q N_iq V_q q_q] / [sum_q N_iq V_q]
-
-   keeps constants and the integral sum V q, and V S is symmetric. F-bar gives laws another change
-   of volume than that of the point, in the manner of E.A. de Souza Neto et al., Int. J. Solids
-   Struct. 33 (1996) 3277, and, for points, W.M. Coombs et al., Comput. Methods Appl. Mech. Eng. 333
-   (2018) 466; "pressure" puts S p for the pressure in the internal force B^T V sigma.
-
-   With either, the stiffness of the volume is B^T V K S B: symmetric and not negative where the
-   bulk modulus K is uniform, with the energy (B u)^T V K S (B u)/2. What laws account for is
-   (S B u)^T V K (S B u)/2 (F-bar) or (B u)^T V K (B u)/2 (pressure); the ledger has the difference
-   in its integration entry. With both, force and strain belong together whatever the law is and
-   wherever the points are on the lattice: p V S B u is the power of the force and of the law. The
-   stiffness is B^T V S K S B then.
-
-   In the total frame S is constant, and F-bar averages the relative change of volume in a step,
-   dJ/J <- S(dJ/J). Where points move over the lattice, S changes, and pressures that come from sums
-   of such steps have a part that the S of the present does not see, S n = 0. It pushes the nodes,
-   B^T V n, but what moves because of that, S B v = 0, does not take it away: only the strength of
-   the material resists. Metal that flows does not: the pressure of the points of a bar in tension
-   scattered by ten times its yield stress, and the bar had a neck that was none, the sooner, the
-   smaller its cells were against its elongation. Therefore points keep the ratio J of their own
-   motion there, and laws see J <- S J with initial volumes for V, the volume of the material around
-   the point over its initial volume. This depends on the present state only. With both, n makes no
-   force, S n = 0, and averages are those of dJ/J in both frames, so that the powers stay the same.
-
-   What is put right is (dJ/J) I/3 in all three directions, also in plane strain, where it makes
-   F_zz differ from one. Were it put into two directions, then it would have a part that changes the
-   shape, of which the force knows nothing: a stiffness that is not symmetric, which feeds scatter
-   in the pressures, too. In the total frame, with the same S for ever, two directions have shown no
-   harm.
-
-   Averages are taken over the points of one material only, as others have another pressure or
-   another change of volume next to them for good reasons.
-------------------------------------------------------------------------- */
-
+/** With volumes V and functions N of the points of one material,
+ *
+ *    S q_p = sum_i N_ip  [sum_q N_iq V_q q_q] / [sum_q N_iq V_q]
+ *
+ *  F-bar gives laws S of the change of volume, or of the volume, of points (E.A. de Souza Neto et
+ *  al., Int. J. Solids Struct. 33 (1996) 3277; points: W.M. Coombs et al., Comput. Methods Appl.
+ *  Mech. Eng. 333 (2018) 466), and pressure puts S p into the internal force. Why: see
+ *  DECISIONS.md. */
 MPMLocking::MPMLocking(LAMMPS *lmp, MPMField &field, MPMPointState &state) :
     Pointers(lmp), field(field)
 {
   if (field.options.averages_volume()) state.declare(J, "mpm:J");
 }
-
-/* ---------------------------------------------------------------------- */
 
 double *MPMLocking::room_for_gradients()
 {
@@ -76,11 +42,8 @@ double *MPMLocking::room_for_gradients()
   return gradients.data();
 }
 
-/* ----------------------------------------------------------------------
-   q <- S q with q = vectors[3*i] and V = weights[i], which value(i, q, V) sets, for all points of
-   this field, at the positions in rows(): the transfers of PIC with volumes for masses
-------------------------------------------------------------------------- */
-
+/** Q <- S q with q = vectors[3*i] and V = weights[i], which value(i, q, V) sets, for all points of
+ *  this field, at the positions in rows(): the transfers of PIC with volumes for masses. */
 template <class Value> void MPMLocking::average_around_points(const Value &value)
 {
   auto &work = field.work;
@@ -110,12 +73,9 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
   }
 }
 
-/* ----------------------------------------------------------------------
-   I + dt L (total frame: F + dt L) is multiplied by a number, so that laws see a motion like any
-   other. What points keep is this F. The sum of V0 J is that of the true volumes; with averages of
-   dJ/J, it follows the sum of the true changes of volume.
-------------------------------------------------------------------------- */
-
+/** I + dt L (total frame: F + dt L) is multiplied by a number, so that laws see a motion like any
+ *  other. What points keep is this F. The sum of V0 J is that of the true volumes; with averages of
+ *  dJ/J, it follows the sum of the true changes of volume. */
 void MPMLocking::strain(const double *L, double dt)
 {
   MPMFrame &frame = *field.frame;
@@ -155,11 +115,8 @@ void MPMLocking::strain(const double *L, double dt)
   });
 }
 
-/* ----------------------------------------------------------------------
-   the stress of internal forces, with averaged pressure. The points keep theirs, or else the
-   pressure would spread further with every step.
-------------------------------------------------------------------------- */
-
+/** The stress of internal forces, with averaged pressure. The points keep theirs, or else the
+ *  pressure would spread further with every step. */
 void MPMLocking::average_pressure()
 {
   const auto &pressure = field.work.vectors, &volume = field.work.weights;

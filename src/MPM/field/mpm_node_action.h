@@ -22,9 +22,9 @@ class MPMNodeAction {
  public:
   /** Order of actions. Phases at the same place share their momentum first; then other actions
    *  exchange it between materials. Walls, which hold nodes for good, come after these; otherwise
-   *  contact would push points through them. Only mouths pass through walls. Nodes that follow
+   *  contact would push points through them. Only inlets pass through walls. Nodes that follow
    *  others come after all of these. */
-  enum Turn { PHASES, EXCHANGE, BETWEEN_BODIES, RIGID_BODIES, WALLS, MOUTHS, TIED_NODES };
+  enum Turn { PHASES, EXCHANGE, BETWEEN_BODIES, RIGID_BODIES, WALLS, INLETS, TIED_NODES };
   virtual Turn turn() const { return EXCHANGE; }
 
   /** Checks and prepares the action at the start of a run; called by fix mpm in its init().

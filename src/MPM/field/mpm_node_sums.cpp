@@ -10,8 +10,8 @@
 
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
-#include "field/mpm_edges.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_nodes.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_stencil.h"
@@ -29,10 +29,8 @@ static bool reaches(const Grid::Block &block, const std::vector<char> &near)
   });
 }
 
-/* ----------------------------------------------------------------------
-   a sum over points at the nodes of some blocks. weigh(point) sets what the kernel reads of a point
-------------------------------------------------------------------------- */
-
+/** A sum over points at the nodes of some blocks. weigh(point) sets what the kernel reads of a
+ *  point. */
 template <class Weigh>
 static void map_some(MPMField &field, const TransferKernels &with, const PointRows &r,
                      const TransferStep &s, P2G p2g, const std::vector<char> &near, int lane,
@@ -47,11 +45,8 @@ static void map_some(MPMField &field, const TransferKernels &with, const PointRo
   field.nodes.sum(field.work.nodes.data(), with.nreal, lane, nlane);
 }
 
-/* ----------------------------------------------------------------------
-   the internal force of the Cauchy stress -I is the gradient of the volume; with an axis of
-   symmetry, that of the area in the plane, times the length of the circle through the node
-------------------------------------------------------------------------- */
-
+/** The internal force of the Cauchy stress -I is the gradient of the volume; with an axis of
+ *  symmetry, that of the area in the plane, times the length of the circle through the node. */
 static void map_gradient_with(const TransferKernels &with, MPMField &field, Weight content,
                               const std::vector<char> &near, std::vector<double> &gradient)
 {
@@ -92,8 +87,6 @@ void LAMMPS_NS::map_surface(MPMField &field, const std::vector<char> &near,
 {
   map_gradient_with(field.pic, field, Weight::VOLUME, near, gradient);
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** The B-spline of an order around 0 at x (power: its order), or its integral up to x (power: one
  *  more), as a sum of truncated powers. */
@@ -182,8 +175,6 @@ void LAMMPS_NS::map_boxes(MPMField &field, const std::vector<MPMField *> &bodies
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void LAMMPS_NS::map_forces(MPMField &field, const std::vector<char> &near,
                            const std::function<void(int, double *, double *)> &give,
                            std::vector<double> &force)
@@ -207,8 +198,6 @@ void LAMMPS_NS::map_forces(MPMField &field, const std::vector<char> &near,
     for (int d = 0; d < 3; d++) force[3 * n + d] = work.nodes[n * nreal + lane + d];
 }
 
-/* ---------------------------------------------------------------------- */
-
 void LAMMPS_NS::map_volume(MPMField &field, const std::vector<char> &near,
                            std::vector<double> &share)
 {
@@ -227,8 +216,6 @@ void LAMMPS_NS::map_volume(MPMField &field, const std::vector<char> &near,
   for (int64_t n = 0; n < field.grid.nnodes(); n++)
     share[n] = inverse * field.work.nodes[n * with.nreal + 3];
 }
-
-/* ---------------------------------------------------------------------- */
 
 void LAMMPS_NS::visit_points(const MPMField &field, const std::vector<int> &wanted,
                              const std::function<void(int, int, double, const double *)> &f)
@@ -270,7 +257,6 @@ void LAMMPS_NS::volume_at_points(MPMField &field, std::vector<double> &share)
   });
 
   // behind a fixed face, the mirror image: nothing can get between it and the body
-
   const int nreal = pic.nreal;
   double *const volume = nodes.data() + 3;
   MPMEdges faces(field.lmp, field);

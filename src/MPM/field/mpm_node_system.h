@@ -10,11 +10,14 @@
 #define LMP_MPM_NODE_SYSTEM_H
 
 #include "lattice/grid.h"
+#include "lmptype.h"
+#include "solve/lattice_ranks.h"
 #include "solve/linear_system.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
+class MPMHalo;
 
 /** Adds this rank's part of a[k] . b[k] to sum[k], for n pairs of vectors with width reals for each
  *  node of a grid, from index offset on. Each node counts once, on the rank that owns it. */
@@ -46,6 +49,33 @@ class MPMNodeSystem : public MPM_NS::LinearSystem {
 
  private:
   std::vector<double> mine, sums_of_ranks;    // sums of this rank, and of all ranks
+};
+
+/** Ranks of LAMMPS for solves on a lattice. Sums at nodes use a halo that is set up for the
+ *  grid. */
+class MPMLatticeRanks : public MPM_NS::LatticeRanks {
+ public:
+  MPMLatticeRanks(class LAMMPS *lmp, const MPM_NS::Grid &grid, MPMHalo &halo) :
+      lmp(lmp), grid(grid), halo(halo)
+  {
+  }
+
+  int number() const override;
+  int me() const override;
+  void sum(double *values, int width) override;
+  /** Stops with an error if the total size exceeds the range of an int. */
+  const std::vector<char> &gather_bytes(const void *mine, std::size_t bytes) override;
+  const std::vector<char> &gather_sizes(const void *mine, const std::vector<int> &sizes) override;
+
+ private:
+  class LAMMPS *const lmp;
+  const MPM_NS::Grid &grid;
+  MPMHalo &halo;
+  std::vector<bigint> bytes_of_ranks;
+  std::vector<int> counts, first;
+  std::vector<char> all;
+
+  const std::vector<char> &gather_counts(const void *mine);
 };
 
 }    // namespace LAMMPS_NS

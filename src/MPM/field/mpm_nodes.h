@@ -13,6 +13,7 @@
 #include "pointers.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <list>
 #include <memory>
 #include <string>
@@ -35,9 +36,37 @@ struct NodeField {
 }    // namespace MPM_NS
 
 namespace LAMMPS_NS {
-class MPMEdges;
 class MPMField;
 class MPMHalo;
+
+/** Nodes at the fixed faces of the box that are planes of nodes, with their neighbors. */
+class MPMEdges : protected Pointers {
+ public:
+  struct Nodes {
+    int64_t outside, face, inside;    ///< outside is negative if no point reaches it
+  };
+  std::vector<Nodes> lists[3];    ///< by axis
+
+  MPMEdges(class LAMMPS *lmp, const MPMField &field) : Pointers(lmp), field(field) {}
+
+  /** Stops with an error if a fixed face is not a plane of nodes. */
+  void check() const;
+  /** Makes the lists. without_outside: also with nodes whose neighbor outside does not exist. */
+  void find(bool without_outside);
+
+  /** For functions that are modified at the faces: moves the sums of this rank at nodes outside to
+   *  the nodes at the face and inside, before the sums of other ranks are added. nodes:
+   *  [node][nreal], of which the nlane reals from lane on. */
+  void fold(double *nodes, int nreal, int lane, int nlane) const;
+  /** Sets the values of nodes outside, for interpolation. Where faces meet, the last axis overrides
+   *  others. */
+  void extend(double *nodes, int nreal, int lane, int nlane) const;
+  double memory_usage() const;
+
+ private:
+  const MPMField &field;
+  bool face_on_nodes(int axis, int side, int &plane) const;
+};
 
 /** Values at the nodes of a field. Sums over this rank's points become sums over all ranks here,
  *  with periodic images and edges. Other physics stores its values here. */

@@ -10,13 +10,13 @@
 
 #include "comm.h"
 #include "field/mpm_cpdi.h"
-#include "field/mpm_edges.h"
 #include "field/mpm_every.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_halo.h"
+#include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
 #include "platform.h"
@@ -24,8 +24,6 @@
 #include <algorithm>
 
 using namespace LAMMPS_NS;
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
 {
@@ -44,33 +42,29 @@ void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
   for (auto *action : actions) action->init_action();
   for (auto *other : physics) other->init_physics(*this);
 
-  stages.clear();
+  clear();
   scheme(*this);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMPlan::each(const std::string &name, const Data &reads, const Data &writes, Each run,
                    Wanted wanted)
 {
-  std::vector<MPMField *> list;
+  std::vector<Part> parts;
   for (auto *field : fields)
-    if (!wanted || wanted(*field)) list.push_back(field);
-  const std::vector<double> seconds(list.size(), 0.0);
-  if (!list.empty()) stages.push_back({name, std::move(run), reads, writes, list, false, seconds});
+    if (!wanted || wanted(*field))
+      parts.push_back({fields.size() > 1 ? field->id() : "", [run, field] {
+                         run(*field);
+                       }});
+  if (!parts.empty()) add(name, reads, writes, std::move(parts));
 }
 
 void MPMPlan::together(const std::string &name, const Data &reads, const Data &writes,
                        const std::function<void()> &run, Wanted wanted)
 {
-  const auto once = [run](MPMField &) {
-    run();
-  };
   const auto wants = [&wanted](const MPMField *field) {
     return !wanted || wanted(*field);
   };
-  if (std::any_of(fields.begin(), fields.end(), wants))
-    stages.push_back({name, once, reads, writes, {fields[0]}, true, {0.0}});
+  if (std::any_of(fields.begin(), fields.end(), wants)) add(name, reads, writes, run);
 }
 
 void MPMPlan::node_actions(MPMNodeAction::Stage stage, Wanted wanted)
@@ -90,8 +84,6 @@ void MPMPlan::place(Place at)
   for (auto *other : physics) other->add_stages(*this, at);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPlan::act_on_nodes(MPMNodeAction::Stage stage)
 {
   const double dt = fields[0]->step_dt();
@@ -109,17 +101,7 @@ void MPMPlan::step()
   for (auto *field : fields)
     if (field->every) waits = field->every->wait() || waits;
   if (waits) return;
-  double time = platform::walltime();
-  for (auto &stage : stages) {
-    for (std::size_t k = 0; k < stage.seconds.size(); k++) {
-      if (observer) observer(stage, *stage.fields[k], false);
-      stage.run(*stage.fields[k]);
-      if (observer) observer(stage, *stage.fields[k], true);
-      const double now = platform::walltime();
-      stage.seconds[k] += now - time;
-      time = now;
-    }
-  }
+  run();
 }
 
 /** Blocks of points first, then those that node actions need next to these. */
@@ -184,12 +166,10 @@ void MPMPlan::find_blocks_now()
     find_blocks();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPlan::start()
 {
   watch->start();
-  for (auto &stage : stages) std::fill(stage.seconds.begin(), stage.seconds.end(), 0.0);
+  clear_costs();
   wall_start = platform::walltime();
   cpu_start = platform::cputime();
   for (auto *field : fields) {
@@ -201,31 +181,21 @@ void MPMPlan::start()
     if (field->fracture_watch) field->fracture_watch->start();
   }
 
-  if (comm->me || std::none_of(fields.begin(), fields.end(), [](auto *field) {
-        return field->options.plan;
-      }))
-    return;
-  std::string text = "MPM plan of a step:\n";
-  for (const auto &stage : stages) {
-    std::string name = stage.name;
-    for (auto *field : stage.fields)
-      if (fields.size() > 1 && !stage.once) name += std::string(" ") + field->id();
-    text += fmt::format("  {:<40} {} -> {}\n", name, stage.reads.text(), stage.writes.text());
-  }
-  utils::logmesg(lmp, text);
+  const bool prints = std::any_of(fields.begin(), fields.end(), [](auto *field) {
+    return field->options.plan;
+  });
+  if (prints && comm->me == 0) utils::logmesg(lmp, "MPM plan of a step:\n" + text());
 }
 
-/* ----------------------------------------------------------------------
-   A stage costs what it costs the slowest rank; stages of all fields count for the first one. Sorts
-   come before the step. Without keyword plan, stages of the same name are one entry
-------------------------------------------------------------------------- */
-
+/** A stage costs what it costs the slowest rank; stages of all fields count for the first one.
+ *  Sorts come before the step. Without keyword plan, stages of the same name are one entry. */
 std::vector<MPMPlan::Cost> MPMPlan::costs(const MPMField &field, double scale) const
 {
   std::vector<Cost> list = {{"sort", field.map->sort_time}};
-  for (const auto &stage : stages)
-    for (std::size_t k = 0; k < stage.fields.size(); k++)
-      if (stage.fields[k] == &field) list.push_back({stage.name, stage.seconds[k]});
+  for (const auto &stage : MPMStageList::list())
+    for (const auto &part : stage.parts)
+      if (part.owner == field.id() || (part.owner.empty() && &field == fields[0]))
+        list.push_back({stage.name, part.seconds});
   for (auto &cost : list) {
     double slowest;
     MPI_Allreduce(&cost.time, &slowest, 1, MPI_DOUBLE, MPI_MAX, world);
@@ -291,8 +261,8 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::s
   text += fmt::format("  {:.0f} bytes per point", bytes_per_point);
   if (field.options.plan)
     text += fmt::format(
-        "; {:.0f} blocks with points of {:.0f} active, {:.1f} points per block\n"
-        "  {} updates of the topology, {} sorts, {:.0f} halo bytes per step in {:.0f} messages",
+        "; {:.0f} blocks with points of {:.0f} active, {:.1f} points per block\n  {} updates of "
+        "the topology, {} sorts, {:.0f} halo bytes per step in {:.0f} messages",
         sum[1], sum[2], npoints / std::max(1.0, sum[1]), field.map->nbuild, field.map->nsort,
         sum[3], sum[4]);
   const auto least = fmt::format("{:.6g}", counts.dt_min),
@@ -307,11 +277,10 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::s
                    100.0 * least_use);
   const auto &deleted = field.guard->deleted;
   if (deleted.points > 0.0)
-    utils::logmesg(lmp,
-                   "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} "
-                   "{:.10g}\n",
-                   deleted.points, deleted.mass, deleted.momentum[0], deleted.momentum[1],
-                   deleted.momentum[2]);
+    utils::logmesg(
+        lmp, "  {:.0f} points deleted so far, mass {:.10g}, momentum {:.10g} {:.10g} {:.10g}\n",
+        deleted.points, deleted.mass, deleted.momentum[0], deleted.momentum[1],
+        deleted.momentum[2]);
   utils::logmesg(lmp, field.frame->report());
   if (field.guard->nbad())
     utils::logmesg(lmp, "  {} bad point updates so far (policy {})\n", field.guard->nbad(),

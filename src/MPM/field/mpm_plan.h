@@ -9,9 +9,9 @@
 #ifndef LMP_MPM_PLAN_H
 #define LMP_MPM_PLAN_H
 
+#include "base/mpm_stage_list.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
-#include "field/mpm_stage_data.h"
-#include "field/mpm_watch.h"
 #include "pointers.h"
 
 #include <functional>
@@ -26,22 +26,16 @@ class MPMLoad;
 class MPMPhysics;
 class MPMPorePressure;
 
-/** The step of all fields as a list of named stages, which is made once at the start of a run. Each
- *  of the four schemes is one such list, see mpm_step.cpp. The cost of each stage is measured. */
-class MPMPlan : protected Pointers {
+/** The step of all fields as a list of stages, which is made once at the start of a run. Each of
+ *  the four schemes is one such list, see mpm_step.cpp. */
+class MPMPlan : protected Pointers, private MPMStageList {
  public:
   using Each = std::function<void(MPMField &)>;
-  using Data = MPMStageData;
   using Wanted = std::function<bool(const MPMField &)>;
-
-  struct Stage {
-    std::string name;
-    Each run;
-    Data reads, writes;
-    std::vector<MPMField *> fields;    ///< the first one only, if it is run once
-    bool once;
-    std::vector<double> seconds;    ///< [field], spent in this stage
-  };
+  using MPMStageList::Data;
+  using MPMStageList::list;
+  using MPMStageList::observe;
+  using MPMStageList::Stage;
 
   /** Places in each list where other physics can add stages. Physics adds them in the order of
    *  definition. */
@@ -83,12 +77,6 @@ class MPMPlan : protected Pointers {
   /** Append the stages that other physics has at this place. */
   void place(Place);
 
-  /** The list of this run. */
-  const std::vector<Stage> &list() const { return stages; }
-  /** From now on, calls a function before (done is false) and after each stage. */
-  using Observer = std::function<void(const Stage &, const MPMField &, bool done)>;
-  void observe(Observer use) { observer = std::move(use); }
-
   /** Start of a run. */
   void start();
   /** Called in each step of LAMMPS; runs the stages if a step of the cycle is due. */
@@ -114,8 +102,6 @@ class MPMPlan : protected Pointers {
     std::string stage;
     double time;    // [ns] per step and point of one process
   };
-  std::vector<Stage> stages;
-  Observer observer;
   bool physics_looks_beyond() const;
   std::vector<Cost> costs(const MPMField &, double scale) const;
   double wall_start = 0.0, cpu_start = 0.0;    // at the start of the run [s]

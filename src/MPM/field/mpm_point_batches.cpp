@@ -41,8 +41,6 @@ void LAMMPS_NS::load_state(MPMField &field, Batch &b, const int *list, int n,
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisitor &visit)
 {
   const Atom *atom = lmp->atom;
@@ -54,11 +52,10 @@ void LAMMPS_NS::visit_point_batches(LAMMPS *lmp, int groupbit, const BatchVisito
     field->find_materials();
     for (int i = 0; i < atom->nlocal; i++)
       if ((atom->mask[i] & groupbit) && field->is_point(i) && !field->material_of(i))
-        lmp->error->one(
-            FLERR, Error::NOLASTLINE,
-            "Material point {} of fix mpm {} has no material: define a fix mpm/material "
-            "for its group",
-            atom->tag[i], field->id());
+        lmp->error->one(FLERR, Error::NOLASTLINE,
+                        "Material point {} of fix mpm {} has no material: define a fix "
+                        "mpm/material for its group",
+                        atom->tag[i], field->id());
     for (auto *material : field->materials) {
       auto flush = [&]() {
         if (list.empty()) return;

@@ -9,6 +9,7 @@
 #include "field/mpm_point_map.h"
 
 #include "atom.h"
+#include "atom_vec.h"
 #include "comm.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_cpdi.h"
@@ -18,7 +19,8 @@
 #include "field/mpm_halo.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
-#include "field/mpm_point_order.h"
+#include "group.h"
+#include "lammps.h"
 #include "memory.h"
 #include "neighbor.h"
 #include "platform.h"
@@ -42,8 +44,6 @@ static constexpr double DECAYED = 1.6;
 // 3 %
 static constexpr double COST_OF_SORT = 40.0;
 
-/* ---------------------------------------------------------------------- */
-
 MPMPointMap::MPMPointMap(LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field)
 {
   for (double **memory_of : {&tile, &tile_load}) {
@@ -64,11 +64,8 @@ std::size_t MPMPointMap::tile_reals() const
   return 8 * (field.domains ? domain_tile_nodes(field.lattice.dim) : MAX_TILE_NODES);
 }
 
-/* ----------------------------------------------------------------------
-   points drift at most half a skin between rebuilds when LAMMPS checks distances each step;
-   a tile has room for a drift of one cell
-------------------------------------------------------------------------- */
-
+/** Points drift at most half a skin between rebuilds when LAMMPS checks distances each step; a tile
+ *  has room for a drift of one cell. */
 void MPMPointMap::setup()
 {
   watch_drift = !field.frame->is_total() && !field.domains &&
@@ -86,17 +83,13 @@ void MPMPointMap::check_drift()
   drifted = 0;
 }
 
-/* ----------------------------------------------------------------------
-   a sort is worth it when the disorder since the last one is more than what little there always is,
-   and has cost as much: whatever comes next, this takes at most twice the time of the best choice
-------------------------------------------------------------------------- */
-
+/** A sort is worth it when the disorder since the last one is more than what little there always
+ *  is, and has cost as much: whatever comes next, this takes at most twice the time of the best
+ *  choice. */
 bool MPMPointMap::wants_sort() const
 {
   return switches > DECAYED * sorted_switches + 100 && extra_disorder > COST_OF_SORT * npoints();
 }
-
-/* ---------------------------------------------------------------------- */
 
 namespace {
 /** Base node of a position and its coordinates there, in cells; relative to the lattice. */
@@ -137,11 +130,8 @@ void MPMPointMap::tile_base(const ActiveBlock &a, int base[3]) const
   for (int d = 0; d < 3; d++) base[d] = grid.side * grid.blocks[a.slot].b[d] - field.kernel.margin;
 }
 
-/* ----------------------------------------------------------------------
-   the nodes of the next block go towards the cache: in a large run they are not there, and nothing
-   else would hide that
-------------------------------------------------------------------------- */
-
+/** The nodes of the next block go towards the cache: in a large run they are not there, and nothing
+ *  else would hide that. */
 void MPMPointMap::load_tile(const ActiveBlock &a, int base[3], bool mean)
 {
   Grid &grid = field.grid;
@@ -166,8 +156,6 @@ double MPMPointMap::memory_usage() const
       active.capacity() * sizeof(ActiveBlock);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPointMap::find_blocks()
 {
   if (sorted_disorder >= 0) extra_disorder += disorder - sorted_disorder;
@@ -180,7 +168,6 @@ void MPMPointMap::find_blocks()
   switches = 0;
 
   // runs, and the range of base coordinates of each block
-
   struct Range {
     double lo[3], hi[3];
   };
@@ -236,7 +223,6 @@ void MPMPointMap::find_blocks()
 
   // blocks that the points can reach before the next update, which comes when a point leaves its
   // tile at the latest: all around the block, if nothing else bounds the drift
-
   const double least = field.domains ? 1.0e-6 : 0.0;    // see MPMCpdi::update()
   constexpr double ROUNDING =
       1.0e-6;    // of places, in cells; kernels may see them in the next cell
@@ -281,8 +267,6 @@ void MPMPointMap::find_blocks()
     }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMPointMap::finish_blocks()
 {
   field.grid.close_periodic();
@@ -303,18 +287,14 @@ void MPMPointMap::finish_blocks()
   }
 }
 
-/* ----------------------------------------------------------------------
-   order the points by block, material, cell and tag, the data itself moved; other atoms follow.
-   Tags make the order, and with it all sums, independent of what happened before.
-------------------------------------------------------------------------- */
-
+/** Order the points by block, material, cell and tag, the data itself moved; other atoms follow.
+ *  Tags make the order, and with it all sums, independent of what happened before. */
 void MPMPointMap::sort()
 {
   const double start = platform::walltime();
   const int nlocal = atom->nlocal;
 
   // key of a point: (block in order of first appearance, material, cell)
-
   const int nmaterials = std::max(1, (int) field.materials.size());
   const int keys_per_block = nmaterials * NODES_PER_BLOCK;
   const int mask = field.grid.side - 1;
@@ -341,7 +321,6 @@ void MPMPointMap::sort()
   }
 
   // blocks in order of their coordinates
-
   std::vector<int> rank(index_of_block.size());
   int nblocks = 0;
   for (const auto &entry : index_of_block) rank[entry.second] = nblocks++;
@@ -354,4 +333,60 @@ void MPMPointMap::sort()
   valid = false;
   nsort++;
   sort_time += platform::walltime() - start;
+}
+
+void LAMMPS_NS::put_in_order(LAMMPS *lmp, std::vector<int> &key, int nkeys)
+{
+  Atom *const atom = lmp->atom;
+  Comm *const comm = lmp->comm;
+  const int nlocal = atom->nlocal;
+  const int firstbit = atom->firstgroupname ? lmp->group->bitmask[atom->firstgroup] : 0;
+  const int others = firstbit ? nkeys + 1 : 0;
+  const int all_keys = others + nkeys + 1;
+  std::vector<int> start_of_key(all_keys + 1, 0);
+  for (int i = 0; i < nlocal; i++) {
+    if (key[i] < 0) key[i] = nkeys;
+    if (!(atom->mask[i] & firstbit)) key[i] += others;
+    start_of_key[key[i] + 1]++;
+  }
+  for (int k = 0; k < all_keys; k++) start_of_key[k + 1] += start_of_key[k];
+  std::vector<int> permute(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
+  for (int i = 0; i < nlocal; i++) permute[next[key[i]]++] = i;
+  const tagint *tag = atom->tag;
+  for (int k = 0; k < all_keys; k++)
+    if (k != nkeys && k != others + nkeys && start_of_key[k + 1] - start_of_key[k] > 1)
+      std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
+                [tag](int i, int j) {
+                  return tag[i] < tag[j];
+                });
+
+  // ghosts refer to the old order, and the first of them is in the free place that is used below:
+  // the map must forget them before
+  const bool mapped = atom->map_style != Atom::MAP_NONE;
+  const bool moves = !std::is_sorted(permute.begin(), permute.end());
+  bigint renew = atom->nghost + (moves && mapped), renew_all;
+  MPI_Allreduce(&renew, &renew_all, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+  if (renew_all) {
+    if (mapped) atom->map_clear();    // as in exchange(), for borders()
+    atom->nghost = 0;                 // else borders() appends to them
+    atom->avec->clear_bonus();
+  }
+
+  // move the atoms, cycle by cycle, through the free place at the end
+  if (nlocal == atom->nmax) atom->avec->grow(0);
+  std::vector<int> &current = key;
+  for (int i = 0; i < nlocal; i++) current[i] = i;
+  for (int i = 0; i < nlocal; i++) {
+    if (current[i] == permute[i]) continue;
+    atom->avec->copy(i, nlocal, 0);
+    int empty = i;
+    while (permute[empty] != i) {
+      atom->avec->copy(permute[empty], empty, 0);
+      empty = current[empty] = permute[empty];
+    }
+    atom->avec->copy(nlocal, empty, 0);
+    current[empty] = permute[empty];
+  }
+
+  if (renew_all) comm->borders();
 }

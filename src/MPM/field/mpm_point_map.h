@@ -15,6 +15,7 @@
 
 namespace LAMMPS_NS {
 class FixMPMMaterial;
+class LAMMPS;
 class MPMField;
 
 /** Which points lie in which blocks of the lattice, and their order in memory. */
@@ -85,6 +86,14 @@ class MPMPointMap : protected Pointers {
   bigint extra_disorder =
       0;    // excess of disorder over sorted_disorder, summed over the steps since the last sort
 };
+
+/** Moves the atoms of this rank into the order of their keys; atoms with equal keys are sorted by
+ *  tag. Collective.
+ *
+ *  key: [nlocal] from 0 to nkeys - 1. Atoms with a negative key come last, in their previous order.
+ *  If LAMMPS wants the atoms of a group to be first (atom_modify first), they stay first and are
+ *  sorted in the same way among themselves. The vector is overwritten. */
+void put_in_order(LAMMPS *, std::vector<int> &key, int nkeys);
 
 }    // namespace LAMMPS_NS
 #endif

@@ -19,11 +19,11 @@
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
-#include "field/mpm_integrators.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
 #include "force.h"
 #include "group.h"
+#include "lammps.h"
 #include "material/material_point.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -63,11 +63,8 @@ void MPMSetupChecks::run(When when, bool first)
     if (check.when == when && (first || !check.of_all)) (this->*check.look)();
 }
 
-/* ----------------------------------------------------------------------
-   a point must have one integrator; fixes of this style may hide from LAMMPS that they are one,
-   see init()
-------------------------------------------------------------------------- */
-
+/** A point must have one integrator; fixes of this style may hide from LAMMPS that they are one,
+ *  see FixMPM::init(). */
 void MPMSetupChecks::integrators()
 {
   refuse_other_integrators(lmp, field.fix);
@@ -111,24 +108,20 @@ void MPMSetupChecks::locking()
     if (ratio < LOCKS) continue;
     warned_of_locking = true;
     if (comm->me) continue;
-    error->warning(
-        FLERR,
-        "Fix mpm {}: fix mpm/material {} has a Poisson ratio of {:.5g}, with which points "
-        "lock, and bodies that bend or are indented are 7 to 20 % too stiff on 10 cells: use "
-        "locking fbar or pressure",
-        field.id(), field.materials[k]->id, ratio);
+    error->warning(FLERR,
+                   "Fix mpm {}: fix mpm/material {} has a Poisson ratio of {:.5g}, with which "
+                   "points lock, and bodies that bend or are indented are 7 to 20 % too stiff on "
+                   "10 cells: use locking fbar or pressure",
+                   field.id(), field.materials[k]->id, ratio);
   }
 }
 
-/* ----------------------------------------------------------------------
-   In the total frame points stay at their positions in their cells, even where round-off decides
-   about strain and stress. Linear and Bernstein functions have gradients that jump at faces of
-   cells. Those of quadratic functions do not, but near the end of one (grad N)^2/N does not vanish.
-   Forces have one factor grad N, and the strain from new velocities has another one: a node that
-   only this point reaches, with the mass m_p N, changes its strain by an amount that does not
-   depend on N, unless N is zero. Only the outermost points have such nodes.
-------------------------------------------------------------------------- */
-
+/** In the total frame points stay at their positions in their cells, even where round-off decides
+ *  about strain and stress. Linear and Bernstein functions have gradients that jump at faces of
+ *  cells. Those of quadratic functions do not, but near the end of one (grad N)^2/N does not
+ *  vanish. Forces have one factor grad N, and the strain from new velocities has another one: a
+ *  node that only this point reaches, with the mass m_p N, changes its strain by an amount that
+ *  does not depend on N, unless N is zero. Only the outermost points have such nodes. */
 void MPMSetupChecks::places()
 {
   constexpr double NEAR = 1.0e-9;    // in node spacings
@@ -167,20 +160,17 @@ void MPMSetupChecks::places()
     if (!bad) continue;
     if (comm->me == 0)
       error->warning(FLERR,
-                     quadratic
-                         ? "Fix mpm {}: round-off decides whether the outermost points along {} "
-                           "reach the next node, and in frame total with scheme usl and this "
-                           "transfer about their stress, as they are in the middle of cells: "
-                           "use other ones (ppc 2), transfer apic, or scheme musl"
-                         : "Fix mpm {}: round-off decides in which cell points along {} are, and "
-                           "in frame total about their stress, as they are on faces of cells: "
-                           "use other ones (ppc), or another origin",
+                     quadratic ? "Fix mpm {}: round-off decides whether the outermost points along "
+                                 "{} reach the next node, and in frame total with scheme usl and "
+                                 "this transfer about their stress, as they are in the middle of "
+                                 "cells: use other ones (ppc 2), transfer apic, or scheme musl"
+                               : "Fix mpm {}: round-off decides in which cell points along {} are, "
+                                 "and in frame total about their stress, as they are on faces of "
+                                 "cells: use other ones (ppc), or another origin",
                      field.id(), (char) ('x' + d));
     return;
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMSetupChecks::points()
 {
@@ -220,24 +210,23 @@ void MPMSetupChecks::points()
   });
   if (all[POINT] == 0 && !may_be_empty)
     error->all(FLERR,
-               "Fix mpm {} has no material points: its group {} has no atoms with a volume; "
-               "make points with create_points, or give atoms a volume with set ... volume",
+               "Fix mpm {} has no material points: its group {} has no atoms with a volume; make "
+               "points with create_points, or give atoms a volume with set ... volume",
                field.id(), group->names[field.fix.igroup]);
   static const char *const refusals[NKINDS] = {
       nullptr,
-      "{0} material points have no material, for instance point {1}: "
-      "define a fix mpm/material for their group",
-      "{0} material points have more than one material, for instance point {1}: "
-      "the groups of the mpm/material fixes must be disjoint",
-      "{0} material points have no positive mass, for instance point {1}: "
-      "check the density of their material or their set mass",
-      "{0} material points have a position, velocity, deformation or stress that is "
-      "not finite or is inverted, for instance point {1}",
-      "{0} material points of fix mpm {2} axisymmetric are not at positive x, for "
-      "instance point {1}: x is the distance from the axis",
-      "{0} material points are larger than the cells of fix mpm {2}, for instance point "
-      "{1}: shape gimp and cpgimp need at least one point per cell, and aspect if points "
-      "are not cubes"};
+      "{0} material points have no material, for instance point {1}: define a fix mpm/material for "
+      "their group",
+      "{0} material points have more than one material, for instance point {1}: the groups of the "
+      "mpm/material fixes must be disjoint",
+      "{0} material points have no positive mass, for instance point {1}: check the density of "
+      "their material or their set mass",
+      "{0} material points have a position, velocity, deformation or stress that is not finite or "
+      "is inverted, for instance point {1}",
+      "{0} material points of fix mpm {2} axisymmetric are not at positive x, for instance point "
+      "{1}: x is the distance from the axis",
+      "{0} material points are larger than the cells of fix mpm {2}, for instance point {1}: shape "
+      "gimp and cpgimp need at least one point per cell, and aspect if points are not cubes"};
   for (int kind = NONE; kind < NKINDS; kind++)
     if (all[kind]) error->all(FLERR, refusals[kind], all[kind], example_all[kind], field.id());
 }
@@ -260,19 +249,15 @@ void MPMSetupChecks::rings()
   }
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_MAX, world);
   if (comm->me == 0 && all[0] <= -(1.0 + SAME) * all[1] && all[2] > -FAR * all[3])
-    error->warning(
-        FLERR,
-        "Points of fix mpm {} axisymmetric have the same volume at all radii, which rings "
-        "of one section have not: use create_points after the fix",
-        field.id());
+    error->warning(FLERR,
+                   "Points of fix mpm {} axisymmetric have the same volume at all radii, which "
+                   "rings of one section have not: use create_points after the fix",
+                   field.id());
 }
 
-/* ----------------------------------------------------------------------
-   Neighbor lists of points and grains: the two settings that make them slow. Pairs of points only
-   cost time, unless pair style mpm/penalty uses them; and with bins of the size
-   of a grain, each point tests all points within reach of a grain.
-------------------------------------------------------------------------- */
-
+/** Neighbor lists of points and grains: the two settings that make them slow. Pairs of points only
+ *  cost time, unless pair style mpm/penalty uses them; and with bins of the size of a grain, each
+ *  point tests all points within reach of a grain. */
 void MPMSetupChecks::neighbors()
 {
   constexpr bigint MANY = 1000;    // least number of points for a warning
@@ -314,21 +299,19 @@ void MPMSetupChecks::neighbors()
     }
     if (!excluded && comm->me == 0)
       error->warning(FLERR,
-                     "Fix mpm: pairs of material points of type {} are in the neighbor lists, "
-                     "at great cost and for nothing but pair forces between them: use neigh_modify "
+                     "Fix mpm: pairs of material points of type {} are in the neighbor lists, at "
+                     "great cost and for nothing but pair forces between them: use neigh_modify "
                      "exclude type {} {}, or keyword lists of fix mpm/surface",
                      t, t, t);
   }
   if (cut_others > RATIO * RATIO * cut_points && neighbor->style != Neighbor::MULTI &&
       comm->me == 0)
     error->warning(FLERR,
-                   "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are "
-                   "many times faster with neighbor ... multi and comm_modify mode multi, which "
-                   "keyword lists of fix mpm/surface sets",
+                   "Fix mpm: neighbor lists of points and of grains {:.1f} times as large are many "
+                   "times faster with neighbor ... multi and comm_modify mode multi, which keyword "
+                   "lists of fix mpm/surface sets",
                    sqrt(cut_others / std::max(cut_points, 1.0e-300)));
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMSetupChecks::lists_after_restart()
 {
@@ -340,13 +323,12 @@ void MPMSetupChecks::lists_after_restart()
   const std::string then = text(*lists_of_file), now = text(lists());
   lists_of_file.reset();
   if (comm->me == 0 && now != then)
-    error->warning(
-        FLERR,
-        "Fix mpm: neighbor lists had {} in the run that wrote the restart file, and have "
-        "{} now: what follows differs in the last digits from that run; give neighbor "
-        "and neigh_modify after read_restart, which sets the skin to the default of its "
-        "units where these were others",
-        then, now);
+    error->warning(FLERR,
+                   "Fix mpm: neighbor lists had {} in the run that wrote the restart file, and "
+                   "have {} now: what follows differs in the last digits from that run; give "
+                   "neighbor and neigh_modify after read_restart, which sets the skin to the "
+                   "default of its units where these were others",
+                   then, now);
 }
 
 MPMSetupChecks::Lists MPMSetupChecks::lists() const
@@ -355,11 +337,8 @@ MPMSetupChecks::Lists MPMSetupChecks::lists() const
           neighbor->build_once};
 }
 
-/* ----------------------------------------------------------------------
-   Fixes that are made for atoms: those that set forces affect only external ones, as forces of
-   stress never leave the lattice, and thermostats treat the motion of points as heat
-------------------------------------------------------------------------- */
-
+/** Fixes that are made for atoms: those that set forces affect only external ones, as forces of
+ *  stress never leave the lattice, and thermostats treat the motion of points as heat. */
 void MPMSetupChecks::fixes()
 {
   static const char *const forces =
@@ -384,11 +363,8 @@ void MPMSetupChecks::fixes()
     }
 }
 
-/* ----------------------------------------------------------------------
-   With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A skin
-   counts as small for grains only if it is a small part of their size
-------------------------------------------------------------------------- */
-
+/** With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A
+ *  skin counts as small for grains only if it is a small part of their size. */
 void MPMSetupChecks::skin()
 {
   constexpr double SMALL = 0.1;    // of the node spacing; half of it is a good choice
@@ -397,21 +373,16 @@ void MPMSetupChecks::skin()
   for (const auto *other : MPMField::all(lmp)) h = std::min(h, other->lattice.h);
   const double size = force->pair ? std::min(h, 0.5 * force->pair->cutforce) : h;
   if (comm->me == 0 && neighbor->skin < SMALL * size)
-    error->warning(
-        FLERR,
-        "Fix mpm: the neighbor skin {:.3g} is small for the node spacing {:.3g}, so that "
-        "lists and blocks of nodes are made anew after next to no motion, at great "
-        "cost: use neighbor {:.3g} {}",
-        neighbor->skin, h, 0.5 * h, neighbor->style == Neighbor::MULTI ? "multi" : "bin");
+    error->warning(FLERR,
+                   "Fix mpm: the neighbor skin {:.3g} is small for the node spacing {:.3g}, so "
+                   "that lists and blocks of nodes are made anew after next to no motion, at great "
+                   "cost: use neighbor {:.3g} {}",
+                   neighbor->skin, h, 0.5 * h,
+                   neighbor->style == Neighbor::MULTI ? "multi" : "bin");
 }
 
-/* ----------------------------------------------------------------------
-   Blocks of nodes and the order of points work with a large skin, but lists and ghosts grow with
-   the cube of skin and cutoff. Measured for two touching blocks, cutoff 0.55 and node spacing 1:
-   with a skin of 0.5 0.7 pairs per atom; with 2, 19 pairs and 2.2 times the time of the run; with
-   4, 180 pairs and 6.8 times
-------------------------------------------------------------------------- */
-
+/** Blocks of nodes and the order of points work with a large skin, but lists and ghosts grow with
+ *  the cube of skin and cutoff (DECISIONS.md). */
 void MPMSetupChecks::lists_of_pairs()
 {
   constexpr double MANY = 10.0, RATIO = 8.0;    // pairs per atom; ratio for twice the cutoff in 3d
@@ -446,12 +417,9 @@ void MPMSetupChecks::lists_of_pairs()
                  neighbor->style == Neighbor::MULTI ? "multi" : "bin");
 }
 
-/* ----------------------------------------------------------------------
-   Pair style granular takes its cutoffs from the radii, but restart files lack the data that it
-   needs for this: with the settings of a file alone, cutoffs are undefined, mostly 0. Then there
-   are no ghosts, and contacts across ranks and periodic faces are missed silently.
-------------------------------------------------------------------------- */
-
+/** Pair style granular takes its cutoffs from the radii, but restart files lack the data that it
+ *  needs for this: with the settings of a file alone, cutoffs are undefined, mostly 0. Then there
+ *  are no ghosts, and contacts across ranks and periodic faces are missed silently. */
 static void check_cutoffs(LAMMPS *lmp)
 {
   const Atom *atom = lmp->atom;
@@ -469,18 +437,15 @@ static void check_cutoffs(LAMMPS *lmp)
       if (all[2 * i] > 0.0 && all[2 * j + 1] > 0.0 && !(cut >= sum * (1.0 - 1.0e-10)))
         lmp->error->all(
             FLERR, Error::NOLASTLINE,
-            "Cutoff {:.6g} of pair style granular between points of type {} and grains of "
-            "type {} is below the sum {:.6g} of their largest radii. Read_restart loses the "
-            "cutoffs of this pair style: give pair_style and pair_coeff again after it",
+            "Cutoff {:.6g} of pair style granular between points of type {} and grains of type {} "
+            "is below the sum {:.6g} of their largest radii. Read_restart loses the cutoffs of "
+            "this pair style: give pair_style and pair_coeff again after it",
             cut, i, j, sum);
     }
 }
 
-/* ----------------------------------------------------------------------
-   Grains see points by their radius. LAMMPS gives no error for a radius of zero, which leaves no
-   force or one between centers, nor for one of 0.5, its default, in other units.
-------------------------------------------------------------------------- */
-
+/** Grains see points by their radius. LAMMPS gives no error for a radius of zero, which leaves no
+ *  force or one between centers, nor for one of 0.5, its default, in other units. */
 void MPMSetupChecks::radii()
 {
   if (!atom->radius_flag) return;
@@ -513,18 +478,65 @@ void MPMSetupChecks::radii()
   if (field.options.axisymmetric)
     error->all(
         FLERR, Error::NOLASTLINE,
-        "Points of fix mpm {} axisymmetric cannot meet grains through pair style {}: a "
-        "grain would be a ring; let bodies meet through fix mpm/contact, or use 3d for grains",
+        "Points of fix mpm {} axisymmetric cannot meet grains through pair style {}: a grain would "
+        "be a ring; let bodies meet through fix mpm/contact, or use 3d for grains",
         field.id(), force->pair_style);
   if (all[1] == all[0])
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Points of fix mpm {} have no radius, by which pair style {} couples them to grains: "
-        "use fix mpm/surface, or set ... diameter",
-        field.id(), force->pair_style);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Points of fix mpm {} have no radius, by which pair style {} couples them to "
+               "grains: use fix mpm/surface, or set ... diameter",
+               field.id(), force->pair_style);
   if (all[2])
     error->all(FLERR, Error::NOLASTLINE,
                "{} points of fix mpm {} have a radius of more than two node spacings, for instance "
                "point {}: use fix mpm/surface, or set ... diameter",
                all[2], field.id(), example_all);
+}
+
+void LAMMPS_NS::refuse_other_integrators(LAMMPS *lmp, const Fix &mine)
+{
+  const Atom *atom = lmp->atom;
+  for (const auto *other : lmp->modify->get_fix_list()) {
+    if (other == &mine || !(other->time_integrate || utils::strmatch(other->style, "^mpm$")))
+      continue;
+    bigint n = 0, all;
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->vfrac[i] > 0.0 && (atom->mask[i] & mine.groupbit) &&
+          (atom->mask[i] & other->groupbit))
+        n++;
+    MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+    if (all)
+      lmp->error->all(FLERR, Error::NOLASTLINE,
+                      "{} material points of fix {} (style {}) are also integrated by fix {} "
+                      "(style {}): give the fixes disjoint groups",
+                      all, mine.id, mine.style, other->id, other->style);
+  }
+}
+
+bigint LAMMPS_NS::warn_of_forgotten_points(LAMMPS *lmp, const std::string &style,
+                                           const std::string &lack)
+{
+  const Atom *atom = lmp->atom;
+  int moved = 0;    // groups that something moves
+  for (const auto *ifix : lmp->modify->get_fix_list())
+    if (ifix->time_integrate || utils::strmatch(ifix->style, "^mpm$")) moved |= ifix->groupbit;
+  bigint mine[2] = {0, 0}, all[2];    // points, those that do not move
+  tagint example = 0, example_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->vfrac[i] > 0.0)) continue;
+    mine[0]++;
+    if (atom->mask[i] & moved) continue;
+    mine[1]++;
+    example = std::max(example, atom->tag[i]);
+  }
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+  if (all[1] == 0) return all[0];
+  MPI_Allreduce(&example, &example_all, 1, MPI_LMP_TAGINT, MPI_MAX, lmp->world);
+  if (lmp->comm->me == 0)
+    lmp->error->warning(FLERR,
+                        "{} material points belong to no fix {}, for instance point {}: they do "
+                        "not move and {}; if they shall, put them into the group of a fix {} with "
+                        "keyword group of create_points, or with the group command after it",
+                        all[1], style, example_all, lack, style);
+  return all[0];
 }

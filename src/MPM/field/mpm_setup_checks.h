@@ -9,9 +9,11 @@
 #ifndef LMP_MPM_SETUP_CHECKS_H
 #define LMP_MPM_SETUP_CHECKS_H
 
+#include "lmptype.h"
 #include "pointers.h"
 
 #include <optional>
+#include <string>
 
 namespace LAMMPS_NS {
 class MPMField;
@@ -73,6 +75,15 @@ class MPMSetupChecks : protected Pointers {
   /** Do neighbor lists consist mostly of skin? */
   void lists_of_pairs();
 };
+
+/** Stops with an error if another fix, too, moves material points in the group of a fix that moves
+ *  them. Called at the start of a run by all ranks. */
+void refuse_other_integrators(class LAMMPS *, const class Fix &mine);
+
+/** Warns of material points that no fix moves. A group contains the atoms that existed at the time
+ *  of its command, so points that were made later are easily forgotten. style: of the fix that
+ *  should move them; lack: the consequence for them. Returns the number of all points. */
+bigint warn_of_forgotten_points(class LAMMPS *, const std::string &style, const std::string &lack);
 
 }    // namespace LAMMPS_NS
 #endif

@@ -6,30 +6,13 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   A cell of a fluid has several points, each with a volume of its own, but the forces on its nodes
-   know only some means of their pressure. What is not in these means stays in the points for good:
-   nothing flows because of it. It comes from where the strain that the nodes can describe is not
-   that of the fluid: within one or two cells of a body that deforms, which shares the functions of
-   the nodes with the fluid, of a free surface, and of the walls. There it is a strain of the order
-   of that of the body, whatever the node spacing is, and the pressure of a liquid is its bulk
-   modulus times that.
-
-   Of q = J - 1 of the points, with initial volumes V and functions N,
-
-     S q_p = sum_i N_ip (P_i q)(x_p)
-
-   is what the nodes see: P_i is the linear function of the place that fits q best around node i, by
-   least squares with the weights N_iq V_q. S keeps constant and linear fields, also next to
-   surfaces and walls, and so the pressure of a liquid at rest. V S is symmetric, and the norm of S
-   is 1 or less, as N_ip sum to one: sum V q (the volume of the fluid) and sum V x q do not change,
-   and the energy of compression does not grow. A wave with the wave number k loses a share of the
-   order of (k h)^4.
-
-   q goes towards S q by the share that the user gives in the time in which sound crosses a cell.
-   Errors that keep coming, at a rate of strain e, are then of the order of e h/c: they vanish with
-   the node spacing.
-------------------------------------------------------------------------- */
+/* Of q = J - 1 of the points of a fluid, with initial volumes V and functions N,
+ *
+ *    S q_p = sum_i N_ip (P_i q)(x_p)
+ *
+ *  is what the nodes see: P_i is the linear function of the place that fits q best around node i,
+ *  by least squares with the weights N_iq V_q. q goes towards S q by the share that the user gives
+ *  in the time in which sound crosses a cell. Why: see DECISIONS.md. */
 
 #include "field/mpm_smoothing.h"
 
@@ -55,10 +38,7 @@ using namespace MPM_NS;
 // mean square distance of points around a node along a direction, in node spacings squared, that
 // allows for a slope; of points on a regular array it is 0.25 inside a body, and 0 of a single row
 // of them
-
 static constexpr double MIN_EXTENT = 1.0e-8;
-
-/* ---------------------------------------------------------------------- */
 
 void MPMSmoothing::init()
 {
@@ -66,12 +46,11 @@ void MPMSmoothing::init()
   if (std::none_of(field.materials.begin(), field.materials.end(), [](auto *material) {
         return material->material->is_barotropic();
       }))
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm {}: smooth is for fluids whose pressure depends on their density alone, but "
-        "there is none: remove it, or use a material with eos tait or linear, without strength "
-        "and history variables",
-        field.id());
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm {}: smooth is for fluids whose pressure depends on their density alone, "
+               "but there is none: remove it, or use a material with eos tait or linear, without "
+               "strength and history variables",
+               field.id());
 }
 
 /** To the sums of a node, for a point at r from it; V: volume times weight. */
@@ -122,11 +101,8 @@ static void visit(const MPMStencil &stencil, bool domains, const Grid::Block &bl
     }
 }
 
-/* ----------------------------------------------------------------------
-   node spacing over the speed of sound at the reference density, c^2 = -dp/dJ / density:
-   viscosities, which raise wave speeds for the time step, do not count
-------------------------------------------------------------------------- */
-
+/** Node spacing over the speed of sound at the reference density, c^2 = -dp/dJ / density:
+ *  viscosities, which raise wave speeds for the time step, do not count. */
 double MPMSmoothing::time_to_cross(const FixMPMMaterial &fluid) const
 {
   constexpr double STRAIN = 1.0e-6;
@@ -175,12 +151,9 @@ template <int DIM> void MPMSmoothing::add_points(const FixMPMMaterial *fluid)
   field.nodes.sum(sums.data(), WIDTH, 0, WIDTH);
 }
 
-/* ----------------------------------------------------------------------
-   Value and slope of q at each node: the normal equations of the fit, solved by decomposition into
-   L D L^T. A direction in which the points around have no extent gets no slope. The coefficients
-   are in the end in the place of the sums with q
-------------------------------------------------------------------------- */
-
+/** Value and slope of q at each node: the normal equations of the fit, solved by decomposition into
+ *  L D L^T. A direction in which the points around have no extent gets no slope. The coefficients
+ *  are in the end in the place of the sums with q. */
 template <int DIM> void MPMSmoothing::fit_nodes()
 {
   constexpr int N = DIM + 1, WIDTH = fit_width(DIM);
@@ -252,7 +225,6 @@ template <int DIM> static void find_scales(const double *ratio, int n, double *s
     return;
   }
   // a series within 1e-5, and one step of Halley, which is of third order
-
   for (int p = 0; p < n; p++) {
     constexpr double second = DIM == 3 ? 1.0 / 9.0 : 1.0 / 8.0;
     const double d = ratio[p] - 1.0, s = 1.0 + d * (1.0 / DIM - d * second);
@@ -262,11 +234,8 @@ template <int DIM> static void find_scales(const double *ratio, int n, double *s
   }
 }
 
-/* ----------------------------------------------------------------------
-   F is scaled in the directions that are free, and the pressure follows by the equation of state;
-   viscous stress stays
-------------------------------------------------------------------------- */
-
+/** F is scaled in the directions that are free, and the pressure follows by the equation of state;
+ *  viscous stress stays. */
 template <int DIM> void MPMSmoothing::change_volumes(const MPMPointMap::Run &run, double share)
 {
   const Material &material = *run.material->material;
@@ -313,11 +282,8 @@ template <int DIM> void MPMSmoothing::smooth(const FixMPMMaterial *fluid, double
   }
 }
 
-/* ----------------------------------------------------------------------
-   As often as sound crosses one cell or two, where the map of points knows their nodes: before they
-   move. Times are counted from zero, so that they do not depend on when a run starts
-------------------------------------------------------------------------- */
-
+/** As often as sound crosses one cell or two, where the map of points knows their nodes: before
+ *  they move. Times are counted from zero, so that they do not depend on when a run starts. */
 void MPMSmoothing::smooth()
 {
   // half as often with twice the share: errors over a few cells go as fast, at half the cost

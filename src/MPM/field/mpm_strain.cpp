@@ -6,21 +6,22 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Strain and stress of the points.
-
 #include "field/mpm_strain.h"
 
 #include "atom.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_affine.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_point_batches.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
 #include "material/batch_kernels.h"
+#include "transfer/kernels.h"
 #include "update.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
+// Strain and stress of the points.
 
 void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPointMap::Run &run,
                               int first, int n, const double *L, double dt)
@@ -81,12 +82,9 @@ void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPoin
             first + p, fmt::format("has a deformation gradient of determinant {}", b.J[p]));
 }
 
-/* ----------------------------------------------------------------------
-   points without any stress get the pressure of their equation of state, so that the first step
-   begins with that of a gas; for points that have come to zero stress this changes nothing;
-   points that have failed keep it
-------------------------------------------------------------------------- */
-
+/** Points without any stress get the pressure of their equation of state, so that the first step
+ *  begins with that of a gas; for points that have come to zero stress this changes nothing; points
+ *  that have failed keep it. */
 void LAMMPS_NS::give_initial_stress(MPMField &field, int first)
 {
   Batch &batch = *field.batch;
@@ -115,4 +113,26 @@ void LAMMPS_NS::give_initial_stress(MPMField &field, int first)
     if (mine && !failed) list.push_back(i);
   }
   flush();
+}
+
+void LAMMPS_NS::put_to_rest(MPMField &field, double taken[2])
+{
+  const double energy = field.ledger.point_kinetic_energy();
+  field.ledger.take(energy);
+  taken[0] += energy;
+  const auto *const atom = field.atom;
+  double power = 0.0;
+  const int nC = field.affine ? field.affine->size() : 0,
+            nQ = field.affine && field.affine->Q ? MPM_NS::poly_size(field.lattice.dim) : 0;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!field.is_point(i)) continue;
+    double f[3] = {atom->f[i][0], atom->f[i][1], atom->f[i][2]};
+    for (const auto *ifix : field.elements)
+      for (int d = 0; d < 3; d++) f[d] -= ifix->forces()[3 * (bigint) i + d];
+    for (int d = 0; d < 3; d++) power += f[d] * atom->v[i][d];
+    std::fill_n(atom->v[i], 3, 0.0);
+    if (nC) std::fill_n(field.affine->C[i], nC, 0.0);
+    if (nQ) std::fill_n(field.affine->Q[i], nQ, 0.0);
+  }
+  taken[1] -= 0.5 * power * field.step_dt();
 }

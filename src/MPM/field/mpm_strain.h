@@ -22,5 +22,14 @@ void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run
 /** Gives points without any stress, from first on, the pressure of their equation of state. */
 void give_initial_stress(MPMField &, int first = 0);
 
+/** Brings all points of a field to rest, with their affine parts.
+ *
+ *  Transfers do not lose the kinetic energy of the points: it is taken from the ledger, and added
+ *  to taken[0]. taken[1] gets minus half of the work of the forces of this step, except for the
+ *  forces of elements. The stress of points follows from the whole displacement, while the work of
+ *  forces is counted with the mean of the velocities before and after the step, and the next step
+ *  would add the other half. [energy] */
+void put_to_rest(MPMField &, double taken[2]);
+
 }    // namespace LAMMPS_NS
 #endif

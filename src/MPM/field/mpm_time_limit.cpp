@@ -17,7 +17,7 @@
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
@@ -36,8 +36,6 @@ using namespace MPM_NS;
 
 static constexpr int CHECK_EVERY = 20;    // steps between checks of the time step
 
-/* ---------------------------------------------------------------------- */
-
 void MPMTimeLimit::setup()
 {
   next_check = update->ntimestep;
@@ -50,8 +48,6 @@ void MPMTimeLimit::setup()
   warn();
   if (field.plan->fields[0] == &field) warn_of_small();
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
 {
@@ -85,7 +81,6 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
     }
 
     // consecutive points of one material
-
     const FixMPMMaterial *material = field.material_of(i);
     while (last < atom->nlocal && last < i + BATCH && field.is_point(last) &&
            field.material_of(last) == material && !field.is_element_node(last))
@@ -107,8 +102,7 @@ double MPMTimeLimit::stable_dt(tagint &id_min, double &wave_speed) const
   return smallest;
 }
 
-/** Notes the largest change of volume of the points of a batch in this step; inverted ones are
- *  errors anyway. */
+/** Inverted points are errors anyway. */
 void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
 {
   double most = 0.0;
@@ -118,8 +112,6 @@ void MPMTimeLimit::note_volume_rate(const Batch &b, int first)
   while (fastest < b.n - 1 && fabs(b.J[fastest] / b.Jold[fastest] - 1.0) < most) fastest++;
   volume_rate = {most / b.dt, atom->tag[first + fastest]};
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMTimeLimit::check()
 {
@@ -137,28 +129,21 @@ void MPMTimeLimit::check()
     if (c == 0.0)
       error->one(FLERR,
                  "Time step {:.6g} is above the limit {:.6g} of other physics, such as conduction "
-                 "of heat or "
-                 "flow of pore water, at step {}: {}; {}",
+                 "of heat or flow of pore water, at step {}: {}; {}",
                  field.step_dt(), limit, update->ntimestep, field.guard->describe(i), remedy);
-    error->one(FLERR,
-               "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave speed {:.6g}; "
-               "{}",
-               field.step_dt(),
-               field.frame->is_total() ? "s h/c (s: smallest stretch)" : "h/(c+|v|)", limit,
-               update->ntimestep, field.guard->describe(i), c, remedy);
+    error->one(
+        FLERR,
+        "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave speed {:.6g}; {}",
+        field.step_dt(), field.frame->is_total() ? "s h/c (s: smallest stretch)" : "h/(c+|v|)",
+        limit, update->ntimestep, field.guard->describe(i), c, remedy);
   }
 }
 
-/* ----------------------------------------------------------------------
-   largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
-   bench/extremes has measured for bodies anywhere on the lattice, rounded down. Stress from
-   velocities that the same stress has just changed (USL without affine matrix) reduces it most.
-   With points of finite size it is proportional to the square root of their half size s in node
-   spacings, as the ratio of stiffness and mass of a node that they barely reach is E/(rho h^2 s).
-   Domains (CPDI) do not depend on size. Linear functions without any limit have warnings of their
-   own, see mpm_stage_light.cpp and share_of_thin_nodes().
-------------------------------------------------------------------------- */
-
+/** Largest stable time step relative to h/(c + |v|), where it is below 1: the smallest value that
+ *  bench/extremes has measured, rounded down. With points of finite size it is proportional to the
+ *  square root of their half size s in node spacings, as a node that they barely reach has the
+ *  ratio E/(rho h^2 s) of stiffness and mass. Linear functions without any limit have warnings of
+ *  their own, see blend_light_nodes() and share_of_thin_nodes(). */
 double MPMTimeLimit::stable_share(double size) const
 {
   const auto &options = field.options;
@@ -187,14 +172,11 @@ double MPMTimeLimit::stable_share(double size) const
   return order == 1 ? 0.6 : (order == 2 ? 0.55 : 0.9);
 }
 
-/* ----------------------------------------------------------------------
-   The total frame has no remedy for light nodes, but its lattice does not change: the largest
-   stable time step in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and the
-   mass m = sum_p m_p N_ip is stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and give
-   1.6 times as much with affine matrices. Bernstein functions of the middle of a cell begin like
-   linear ones.
-------------------------------------------------------------------------- */
-
+/** The total frame has no remedy for light nodes, but its lattice does not change: the largest
+ *  stable time step in h/c is known. A node with the stiffness k = sum_p V_p E |grad N_ip|^2 and
+ *  the mass m = sum_p m_p N_ip is stable for dt < (m/k)^1/2 with USL; trials agree within 15 %, and
+ *  give 1.6 times as much with affine matrices. Bernstein functions of the middle of a cell begin
+ *  like linear ones. */
 double MPMTimeLimit::share_of_thin_nodes() const
 {
   const auto &options = field.options;
@@ -236,8 +218,6 @@ double MPMTimeLimit::share_of_thin_nodes() const
   return all > 1.0 ? 1.0 / sqrt(all) : 1.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMTimeLimit::warn() const
 {
   tagint tag;
@@ -248,20 +228,17 @@ void MPMTimeLimit::warn() const
   if (comm->me == 0 && share < 1.0 && field.step_dt() > share * all[0])
     error->warning(
         FLERR,
-        "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and "
-        "scheme can be unstable above {:.2g}, depending on where points are in their cells: "
-        "use fix mpm/dt {:.2g} or less, or another scheme{}",
+        "Fix mpm {}: the time step is {:.3g} h/(c+|v|), but this shape, transfer and scheme can be "
+        "unstable above {:.2g}, depending on where points are in their cells: use fix mpm/dt "
+        "{:.2g} or less, or another scheme{}",
         field.id(), field.step_dt() / all[0], share, share,
         field.frame->is_total() ? ", or an origin for which faces of the body are on nodes" : "");
 }
 
-/* ----------------------------------------------------------------------
-   Warns if nobody has set the time step, and the default of the units is that of atoms: for most
-   bodies so small that nothing moves. If a pair style indicates atoms or grains, it may be right,
-   unless it is tiny. A time step that was set for other reasons than these points (grains, finite
-   elements), or by fix mpm/dt, may have to be small
-------------------------------------------------------------------------- */
-
+/** Warns if nobody has set the time step, and the default of the units is that of atoms: for most
+ *  bodies so small that nothing moves. If a pair style indicates atoms or grains, it may be right,
+ *  unless it is tiny. A time step that was set for other reasons than these points (grains, finite
+ *  elements), or by fix mpm/dt, may have to be small. */
 void MPMTimeLimit::warn_of_small() const
 {
   constexpr double SMALL = 1.0e-2;    // share of the limit below which a time step is small
@@ -274,12 +251,11 @@ void MPMTimeLimit::warn_of_small() const
   const double dt = field.step_dt();
   if (update->dt_default) {
     if (dt < (force->pair ? 0.1 : 1.0) * SMALL * limit)
-      error->warning(
-          FLERR,
-          "Fix mpm: the time step {:.3g}, which no command has set since units {} or read_restart, "
-          "is next to nothing for the limit {:.3g} of these points: use fix mpm/dt 0.5, or "
-          "timestep",
-          dt, update->unit_style, limit);
+      error->warning(FLERR,
+                     "Fix mpm: the time step {:.3g}, which no command has set since units {} or "
+                     "read_restart, is next to nothing for the limit {:.3g} of these points: use "
+                     "fix mpm/dt 0.5, or timestep",
+                     dt, update->unit_style, limit);
     return;
   }
   const bool free = !force->pair && field.elements.empty() &&
@@ -290,8 +266,6 @@ void MPMTimeLimit::warn_of_small() const
                    "fix mpm/dt 0.5 would take {:.0f} times fewer steps",
                    dt, limit, 0.5 * limit / dt);
 }
-
-/* ---------------------------------------------------------------------- */
 
 double LAMMPS_NS::elapsed_time(const Update &update)
 {

@@ -20,9 +20,6 @@
 #include "material/batch_kernels.h"
 #include "material/material.h"
 #include "math/matrix.h"
-#include "modify.h"
-
-#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -57,10 +54,7 @@ MPMTraffic LAMMPS_NS::traffic_of(LAMMPS *lmp, MPMField *field, int i)
   return one;
 }
 
-/* ----------------------------------------------------------------------
-   as at the beginning of Comm::exchange()
-------------------------------------------------------------------------- */
-
+/** As at the beginning of Comm::exchange(). */
 void LAMMPS_NS::begin_traffic(LAMMPS *lmp)
 {
   Atom *const atom = lmp->atom;
@@ -78,8 +72,6 @@ void LAMMPS_NS::end_traffic(LAMMPS *lmp)
   }
   for (auto *field : MPMField::all(lmp)) field->map->valid = false;
 }
-
-/* ---------------------------------------------------------------------- */
 
 MPMTraffic LAMMPS_NS::remove_points(LAMMPS *lmp, const std::function<bool(int i)> &leaves,
                                     bool meant)

@@ -6,22 +6,14 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   A point of PIC and APIC has the velocity field u_p(d) = v_p + C_p d around it (PIC: C = 0), with
-   the kinetic energy m_p (v_p^2 + C_p D C_p^T)/2, where D is the second moment of its functions
-   N_ip. Nodes get the mean of these fields, and points get the fit to the nodes by least squares.
-   Both lose the squares of what is left over,
-
-     sum_p m_p/2 sum_i N_ip |u_p(x_i - x_p) - v_i|^2    with the old velocities of the nodes, and
-     sum_p m_p/2 sum_i N_ip |v_i - u_p(x_i - x_p)|^2    with the new ones and the new u_p,
-
-   which are never negative, and are all that transfers lose. As a sum over points they say how much
-   each point gets as heat. F.H. Harlow's PIC did so (Methods Comput. Phys. 3 (1964) 319), as did
-   the first FLIP (J.U. Brackbill, H.M. Ruppel, J. Comput. Phys. 65 (1986) 314). With <.> = sum_i
-   N_ip . at the point, and the fit w + B d to the old velocities, the sums are
-
-     <v_old^2> - w^2 - |B|_D^2 + (v_p - w)^2 + |C_p - B|_D^2  and  <v_new^2> - v_p^2 - |C_p|_D^2
-------------------------------------------------------------------------- */
+/* A point of PIC and APIC has the velocity field u_p(d) = v_p + C_p d around it (PIC: C = 0), with
+ *  the kinetic energy m_p (v_p^2 + C_p D C_p^T)/2, D being the second moment of its functions.
+ *  Transfers are least squares, and lose the squares of what is left over (F.H. Harlow, Methods
+ *  Comput. Phys. 3 (1964) 319; J.U. Brackbill, H.M. Ruppel, J. Comput. Phys. 65 (1986) 314). With
+ *  <.> = sum_i N_ip . at the point, and the fit w + B d to the old velocities of the nodes, they
+ *  are twice the heat over the mass,
+ *
+ *    <v_old^2> - w^2 - |B|_D^2 + (v_p - w)^2 + |C_p - B|_D^2  and  <v_new^2> - v_p^2 - |C_p|_D^2 */
 
 #include "field/mpm_transfer_heat.h"
 
@@ -34,14 +26,11 @@
 #include "field/mpm_passes.h"
 #include "force.h"
 #include "math/matrix.h"
-#include "update.h"
 
 #include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/* ---------------------------------------------------------------------- */
 
 void MPMTransferHeat::init() const
 {
@@ -69,8 +58,6 @@ static double square(const double *a, int n)
   for (int k = 0; k < n; k++) sum += a[k] * a[k];
   return sum;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMTransferHeat::before_motion()
 {
@@ -132,8 +119,6 @@ void MPMTransferHeat::before_motion()
     energy[i] += squares[0];
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMTransferHeat::give(int first, int n, double *heat)
 {

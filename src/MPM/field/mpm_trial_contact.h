@@ -9,6 +9,10 @@
 #ifndef LMP_MPM_TRIAL_CONTACT_H
 #define LMP_MPM_TRIAL_CONTACT_H
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -38,7 +42,7 @@ class MPMTrialContact {
   virtual bool find_carried(MPMField &, std::vector<double> &left) = 0;
   /** force: forces on nodes by loads on the shares inside, [node][dim], which the wall bears.
    *  Redistributes them so that they do no work on motions that the wall leaves free. */
-  virtual void bear_carried(MPMField &, double *force) = 0;
+  virtual void constrain_carried(MPMField &, double *force) = 0;
   /** yes: from now on, acts bring to the wall the material that is held but was not at the wall at
    *  the start of the step. Otherwise acts hold it at rest relative to the wall, like all other
    *  material. Returns whether there is such material on this rank. */
@@ -55,7 +59,7 @@ class MPMTrialContact {
    *  decide(). */
   virtual bool rubs() const { return has_friction(); }
   /** Sets the sums of impulses to zero. */
-  virtual void forget_pushes() = 0;
+  virtual void clear_impulses() = 0;
   /** The sums now are those of nodes at rest, from the motion of walls alone: keeps them as the
    *  base. */
   virtual void take_base() = 0;
@@ -84,10 +88,68 @@ class MPMTrialContact {
   virtual void take_stop() {}
   /** Nodes will have the velocities v after the stage STEP, in which they get this share of the
    *  friction that was found. Valid until then. */
-  virtual void foresee_velocities(const double *v, double share) = 0;
+  virtual void predict_velocities(const double *v, double share) = 0;
 
  protected:
   ~MPMTrialContact() = default;
+};
+
+/** Interface of a node action that is a projection, or converges to one: lists the nodes that it
+ *  ties together. */
+class MPMLineTies {
+ public:
+  /** Adds groups of nodes of a field to two lists. Each group is the number of its nodes followed
+   *  by the nodes, with -1 for none. others: groups for which the projection node by node serves as
+   *  well, unless they share nodes with ties. */
+  virtual void list_ties(const MPMField &, std::vector<int64_t> &ties,
+                         std::vector<int64_t> &others) const = 0;
+
+ protected:
+  ~MPMLineTies() = default;
+};
+
+/** Contact between bodies that are fields of their own, for a solver that has the nodes of all
+ *  bodies in its vectors [node][dim]. Contacts are rows of constraints, C v = g. The solver makes
+ *  an orthogonal projection of them, together with walls; acts in the stage TRIAL do nothing. A row
+ *  is known on all ranks whose points reach one of its nodes, and counts in sums on one of them
+ *  (its owner). */
+class MPMBodyContact : public MPMTrialContact {
+ public:
+  /** Sets the place of the first node of each body in vectors. To be called before
+   *  begin_trials(). */
+  virtual void place_bodies(const std::function<int64_t(const MPMField &)> &first) = 0;
+  /** Number of rows that this rank knows. */
+  virtual std::size_t nrows() const = 0;
+  /** Number of rows in a group; the rows of a group are on the same nodes. */
+  virtual int rows_of_group() const = 0;
+  /** Identifies a group, with the same value on all ranks. */
+  using Key = std::array<int, 7>;
+  virtual Key key_of(std::size_t group) const = 0;
+  /** Does a group count in sums on this rank? */
+  virtual bool owns(std::size_t group) const = 0;
+  /** Is this row active now? */
+  virtual bool holds(std::size_t row) const = 0;
+  /** Calls use(k, c) for the entries c of C in a row, k: place in vectors; also for rows that are
+   *  not active. */
+  virtual void visit_row(std::size_t row,
+                         const std::function<void(int64_t k, double c)> &use) const = 0;
+  /** Does anything touch, on this rank? */
+  virtual bool touches() const = 0;
+  /** rows: [row] C v, or C v - g with_gaps if gaps are closed; zero for rows that are not
+   *  active. */
+  virtual void find_approach(const double *v, bool with_gaps, double *rows) const = 0;
+  /** Sums over the rows r that this rank owns: sums[0]: r . D^-1 r with the diagonal D of C P_w
+   *  M^-1 C^T; sums[1]: the same with speeds in place of r, those of v at the nodes of the row (v
+   *  null: none), and of the closing of gaps. */
+  virtual void add_squares(const double *rows, const double *v, double *sums) const = 0;
+  /** The symmetric part of add_friction_change(): the direction of friction changes, normal forces
+   *  do not. */
+  virtual void add_friction_turn(const double *du, double *dforce) = 0;
+  /** Adds factor times the impulses of rows to their sums, see MPMTrialContact. */
+  virtual void push(double factor, const double *rows) = 0;
+
+ protected:
+  ~MPMBodyContact() = default;
 };
 
 }    // namespace LAMMPS_NS

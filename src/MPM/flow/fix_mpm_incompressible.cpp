@@ -10,7 +10,7 @@
 
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
-#include "field/mpm_integrators.h"
+#include "field/mpm_setup_checks.h"
 #include "flow/mpm_flow_transfer.h"
 
 #include "atom.h"

@@ -17,7 +17,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 
 #include "base/mpm_state.h"
 #include "base/mpm_step_limit.h"
-#include "field/mpm_fluid.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_point_batches.h"
 #include "flow/mpm_flow.h"
 

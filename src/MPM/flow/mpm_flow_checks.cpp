@@ -8,7 +8,7 @@
 
 #include "flow/mpm_flow_checks.h"
 
-#include "field/mpm_integrators.h"
+#include "field/mpm_setup_checks.h"
 
 #include "atom.h"
 #include "comm.h"

@@ -59,7 +59,7 @@ void MPMFlowInflow::find_section(Inlet &one) const
   if (one.axis < 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {}: into an incompressible flow points must come along an axis of the box, "
-               "not along {:.6g} {:.6g} {:.6g}: use such a normal and mouth",
+               "not along {:.6g} {:.6g} {:.6g}: use such a normal and inlet",
                one.fix->style, one.fix->id, inlet.normal[0], inlet.normal[1], inlet.normal[2]);
   one.side = inlet.normal[one.axis] > 0.0 ? 1 : 0;
   const double middle = (inlet.middle()[one.axis] - cells.lattice.origin[one.axis]) / h,
@@ -72,7 +72,7 @@ void MPMFlowInflow::find_section(Inlet &one) const
   }
   if (one.first > one.last)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix {} {}: the mouth ends in the first cell at a wall: make its region longer",
+               "Fix {} {}: the inlet ends in the first cell at a wall: make its region longer",
                one.fix->style, one.fix->id);
 
   std::map<std::array<int, 2>, double> areas;

@@ -12,7 +12,7 @@
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "field/mpm_point_order.h"
+#include "field/mpm_point_map.h"
 
 #include <algorithm>
 #include <climits>

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_FLOW_PRESSURE_H
 #define LMP_MPM_FLOW_PRESSURE_H
 
-#include "field/mpm_lattice_ranks.h"
+#include "field/mpm_node_system.h"
 #include "flow/mpm_flow_fourier.h"
 #include "flow/mpm_flow_lattice.h"
 #include "flow/mpm_flow_poisson.h"

@@ -13,7 +13,7 @@
 #include "contact/fix_mpm_rigid.h"
 #include "field/mpm_physics.h"
 #include "flow/mpm_flow_cut_cell.h"
-#include "walls/mpm_region_motion.h"
+#include "walls/mpm_region_surface.h"
 
 #include "comm.h"
 #include "domain.h"

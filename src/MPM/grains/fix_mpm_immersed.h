@@ -16,7 +16,7 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 #define LMP_FIX_MPM_IMMERSED_H
 
 #include "declare/option.h"
-#include "field/mpm_listed_points.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
 #include "grains/mpm_drag.h"

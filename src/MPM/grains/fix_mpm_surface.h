@@ -17,7 +17,7 @@ FixStyle(mpm/surface,FixMPMSurface);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
-#include "field/mpm_listed_points.h"
+#include "field/mpm_interfaces.h"
 
 #include <string>
 #include <vector>

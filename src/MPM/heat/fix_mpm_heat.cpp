@@ -9,9 +9,9 @@
 #include "heat/fix_mpm_heat.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_options.h"
 #include "base/mpm_pair_styles.h"
+#include "base/mpm_points.h"
 #include "comm.h"
 #include "contact/pair_mpm_penalty.h"
 #include "domain.h"

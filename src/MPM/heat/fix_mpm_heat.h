@@ -16,7 +16,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #define LMP_FIX_MPM_HEAT_H
 
 #include "base/mpm_state.h"
-#include "field/mpm_heat_sink.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "heat/mpm_grain_heat.h"
 #include "heat/mpm_heat_flow.h"

@@ -87,7 +87,6 @@
 #include "heat/mpm_conduction.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "error.h"

@@ -14,7 +14,7 @@
 #include "diffusion/mpm_layer_mean.h"
 #include "diffusion/mpm_node_scalar.h"
 #include "field/fix_mpm_material.h"
-#include "field/mpm_conductivity.h"
+#include "field/mpm_friction_heat.h"
 #include "heat/mpm_heat_faces.h"
 #include "material/material.h"
 

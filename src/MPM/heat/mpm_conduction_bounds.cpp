@@ -11,7 +11,6 @@
 #include "heat/mpm_conduction.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_points.h"
 #include "field/mpm_cpdi.h"
 #include "field/mpm_field.h"

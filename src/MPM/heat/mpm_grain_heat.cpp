@@ -23,7 +23,7 @@
 #include "heat/mpm_grain_heat.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
+#include "base/mpm_points.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"

@@ -127,18 +127,18 @@ void MPMHeatFlow::find_surfaces()
   for (auto &body : bodies)
     if (body->conduction) body->conduction->faces.mark_near(body->near);
   for (auto &contact : contacts) contact->mark_near();
-  for (auto &skin : skins) skin->mark_near();
-  if (!skins.empty())
+  for (auto &surface : surfaces) surface->mark_near();
+  if (!surfaces.empty())
     for (auto &body : bodies)
       if (!body->conduction) body->want_all();
   for (auto &body : bodies)
     if (!body->conduction || !levels_with(*body->conduction)) body->find_surface();
   for (auto &levels : refined) levels->find_surface();
-  const bool looks = (!skins.empty() || !contacts.empty()) &&
+  const bool looks = (!surfaces.empty() || !contacts.empty()) &&
       thin.looks((int) (options.surfaces.size() + contacts.size()));
   for (std::size_t k = 0; k < contacts.size(); k++)
     contacts[k]->find_contacts(looks ? &thin : nullptr, (int) (options.surfaces.size() + k));
-  for (auto &skin : skins) skin->find_lines(looks ? &thin : nullptr);
+  for (auto &surface : surfaces) surface->find_lines(looks ? &thin : nullptr);
   if (looks) report_thin();
 }
 
@@ -146,7 +146,7 @@ void MPMHeatFlow::find_surfaces()
 void MPMHeatFlow::report_thin()
 {
   MPMHeatThin::Found found;
-  if (!thin.tell(world, found) || comm->me) return;
+  if (!thin.report(world, found) || comm->me) return;
   const int nsurface = (int) options.surfaces.size();
   std::string what = "surface";
   if (found.entry >= nsurface)
@@ -164,7 +164,7 @@ void MPMHeatFlow::report_thin()
 
 int MPMHeatFlow::exchanges(const MPMConduction &conduction) const
 {
-  return (int) contacts.size() + !skins.empty() + conduction.faces.axes_that_follow();
+  return (int) contacts.size() + !surfaces.empty() + conduction.faces.axes_that_follow();
 }
 
 /* ----------------------------------------------------------------------
@@ -178,7 +178,7 @@ void MPMHeatFlow::find_edges()
   for (auto &body : bodies)
     if (body->conduction) body->begin_edges();
   for (auto &contact : contacts) contact->note_edges();
-  for (auto &skin : skins) skin->note_edges();
+  for (auto &surface : surfaces) surface->note_edges();
   for (auto &body : bodies) {
     if (!body->conduction) continue;
     body->conduction->faces.note_edges(*body);
@@ -208,7 +208,7 @@ int MPMHeatFlow::count_stages()
                              field.face_gradient(), field.temperature, &mine[NRATE * k + 1]);
   }
   for (auto &contact : contacts) mine.push_back(contact->begin_step());
-  for (auto &skin : skins) mine.push_back(skin->begin_step());
+  for (auto &surface : surfaces) mine.push_back(surface->begin_step());
   all.resize(mine.size());
   MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_DOUBLE, MPI_MAX, world);
   double greatest = 0.0;
@@ -225,7 +225,7 @@ int MPMHeatFlow::count_stages()
   const double dt = waited.time,
                cap = std::max(greatest, BELOW_ONE_STEP / (dt * std::max(most_at_a_node, 1)));
   const double *rates = all.data() + NRATE * fields.size();
-  const bool has_lines = !contacts.empty() || !skins.empty();
+  const bool has_lines = !contacts.empty() || !surfaces.empty();
   if (has_lines) find_edges();
   double most = 0.0;
   for (std::size_t k = 0; k < fields.size(); k++) {
@@ -242,8 +242,8 @@ int MPMHeatFlow::count_stages()
     greatest += std::min(cap, *rates++);
   }
   most = 0.0;
-  for (auto &skin : skins) {
-    skin->limit(cap, skin->body.conduction->rate_at_edges());
+  for (auto &surface : surfaces) {
+    surface->limit(cap, surface->body.conduction->rate_at_edges());
     most = std::max(most, std::min(cap, *rates++));
   }
   greatest += most;
@@ -275,12 +275,12 @@ void MPMHeatFlow::find_rates()
     field->faces.add_rates(field->temperature, field->rate, present);
   }
   for (auto &levels : refined) levels->rates_from_parents();
-  if (contacts.empty() && skins.empty()) return;
+  if (contacts.empty() && surfaces.empty()) return;
   for (auto &body : bodies)
     if (body->conduction) body->begin_stage();
   for (std::size_t k = 0; k < contacts.size(); k++)
     contacts[k]->exchange(present[contact_places() + k]);
-  for (const auto &skin : skins) skin->exchange(present.data() + surface_places());
+  for (const auto &surface : surfaces) surface->exchange(present.data() + surface_places());
   for (auto &body : bodies) {
     if (!body->conduction) continue;
     body->end_stage();
@@ -297,7 +297,7 @@ bool MPMHeatFlow::linearize()
   int mine = 1, all;
   for (auto *part : parts) mine &= part->faces.linearize(part->temperature);
   for (const auto &contact : contacts) mine &= contact->is_symmetric();
-  for (auto &skin : skins) mine &= skin->linearize();
+  for (auto &surface : surfaces) mine &= surface->linearize();
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, world);
   return all;
 }
@@ -308,13 +308,13 @@ void MPMHeatFlow::find_changes()
     part->find_changes();
     part->faces.add_changes(part->temperature, part->rate);
   }
-  if (contacts.empty() && skins.empty()) return;
+  if (contacts.empty() && surfaces.empty()) return;
   Heats nowhere(MPMHeatFaces::NFACE + 1);
   double between = 0.0;
   for (auto &body : bodies)
     if (body->conduction) body->begin_stage();
   for (const auto &contact : contacts) contact->exchange(between);
-  for (const auto &skin : skins) skin->exchange_changes();
+  for (const auto &surface : surfaces) surface->exchange_changes();
   for (auto &body : bodies) {
     if (!body->conduction) continue;
     body->end_stage();
@@ -336,8 +336,8 @@ void MPMHeatFlow::each_term(int k, double dt, const Term &use)
   for (const auto &body : bodies) {
     if (body->conduction != &part) continue;
     for (const auto &contact : contacts) contact->each_term(*body, use);
-    for (const auto &skin : skins)
-      if (&skin->body == body.get()) skin->each_term(use);
+    for (const auto &surface : surfaces)
+      if (&surface->body == body.get()) surface->each_term(use);
   }
 }
 
@@ -383,7 +383,7 @@ void MPMHeatFlow::conduct()
   for (auto &field : fields)
     if (field->conducts()) field->faces.hold(field->temperature, in_step);
   for (auto &levels : refined) {
-    levels->look_for_thin_skins();
+    levels->look_for_thin_surfaces();
     levels->temperatures_from_parents();
   }
   dt_last = waited.time;
@@ -439,7 +439,7 @@ double MPMHeatFlow::stable_dt(const MPMField &field, tagint &tag) const
   if (solver) return std::numeric_limits<double>::max();
   const auto &conduction = in(field);
   const double rate = conduction.greatest_rate_of_points(tag);
-  const double others = (double) contacts.size() + (skins.empty() ? 0.0 : 1.0);
+  const double others = (double) contacts.size() + (surfaces.empty() ? 0.0 : 1.0);
   return MPMSuperStep::reach(options.most_stages) *
       MPMSuperStep::explicit_limit(
              (1.0 + others) * rate +
@@ -504,6 +504,6 @@ double MPMHeatFlow::memory_usage() const
   for (const auto &field : fields) bytes += field->memory_usage();
   for (const auto &body : bodies) bytes += body->memory_usage();
   for (const auto &contact : contacts) bytes += contact->memory_usage();
-  for (const auto &skin : skins) bytes += skin->memory_usage();
+  for (const auto &surface : surfaces) bytes += surface->memory_usage();
   return bytes;
 }

@@ -98,7 +98,7 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   std::vector<std::unique_ptr<MPMHeatLevels>> refined;      // bodies on several lattices
   std::vector<std::unique_ptr<MPMHeatBody>> bodies;         // fields that have surfaces with heat
   std::vector<std::unique_ptr<MPMHeatContact>> contacts;
-  std::vector<std::unique_ptr<MPMHeatSurfaces>> skins;    // surfaces of fields with conditions
+  std::vector<std::unique_ptr<MPMHeatSurfaces>> surfaces;    // surfaces of fields with conditions
   MPMHeatThin thin;      // thin bodies; entries: surfaces, then contacts
   MPMSuperStep steps;    // explicit stages for the temperatures of all fields together
   // implicit solver for the same; null: explicit

@@ -156,13 +156,13 @@ void MPMHeatFlow::find_neighbors()
       }))
     return;
   const auto contacts = find_fixes<FixMPMContact>(lmp);
-  for (auto &skin : skins)
+  for (auto &surface : surfaces)
     for (auto &field : fields) {
-      const auto &mine = skin->body.field, &other = field->field;
+      const auto &mine = surface->body.field, &other = field->field;
       if (std::any_of(contacts.begin(), contacts.end(), [&](auto *fix) {
             return fix->couples(mine.id(), other.id());
           }))
-        skin->neighbors.push_back(&body_in(other));
+        surface->neighbors.push_back(&body_in(other));
     }
 }
 
@@ -196,10 +196,10 @@ void MPMHeatFlow::init_contacts()
   }
   bodies.clear();
   contacts.clear();
-  skins.clear();
+  surfaces.clear();
   for (auto &field : fields)
     if (!options.surfaces.empty() && field->conducts())
-      skins.push_back(
+      surfaces.push_back(
           std::make_unique<MPMHeatSurfaces>(lmp, body_in(field->field), options.surfaces, sigma()));
   find_neighbors();
   for (auto &field : fields)
@@ -227,8 +227,8 @@ void MPMHeatFlow::init_contacts()
 void MPMHeatFlow::extend_topology(MPMField &field)
 {
   in(field).extend_topology();
-  for (auto &skin : skins)
-    if (&skin->body.field == &field) skin->extend_topology();
+  for (auto &surface : surfaces)
+    if (&surface->body.field == &field) surface->extend_topology();
   for (auto &contact : contacts) contact->extend_topology(field);
 }
 
@@ -237,7 +237,7 @@ void MPMHeatFlow::topology_changed(MPMField &field)
   in(field).faces.topology_changed();
   in(field).find_points(bodies.empty() && !levels_with(in(field)));
   for (auto &body : bodies) body->topology_changed();
-  for (auto &skin : skins) skin->topology_changed();
+  for (auto &surface : surfaces) surface->topology_changed();
   for (auto &contact : contacts) contact->topology_changed();
 }
 

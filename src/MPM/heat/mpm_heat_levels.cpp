@@ -233,7 +233,7 @@ void MPMHeatLevels::find_surface()
   for (const auto &pair : pairs) sum(*pair.fine_surface);
 }
 
-void MPMHeatLevels::look_for_thin_skins()
+void MPMHeatLevels::look_for_thin_surfaces()
 {
   if (warned) return;
   int mine = 0, all;

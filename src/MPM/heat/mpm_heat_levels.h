@@ -47,7 +47,7 @@ class MPMHeatLevels : protected Pointers {
   void find_surface();
   /** Warns once if a lattice ends within reach of a face with a condition, so that a node there is
    *  tied and another node of the same line is not. Collective. */
-  void look_for_thin_skins();
+  void look_for_thin_surfaces();
 
  private:
   std::vector<Pair> pairs;

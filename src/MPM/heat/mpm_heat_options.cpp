@@ -8,7 +8,7 @@
 
 #include "heat/mpm_heat_options.h"
 
-#include "base/mpm_steps_or_auto.h"
+#include "base/mpm_options.h"
 
 #include <algorithm>
 

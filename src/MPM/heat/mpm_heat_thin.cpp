@@ -95,13 +95,13 @@ void MPMHeatThin::take(int entry, const MPMHeatBody &body, const double *at, con
   notes[entry].take({0.0, x[0], x[1], x[2]});
 }
 
-bool MPMHeatThin::tell(MPI_Comm world, Found &found)
+bool MPMHeatThin::report(MPI_Comm world, Found &found)
 {
   std::vector<std::array<double, 2>> all(areas.size());
   MPI_Allreduce(areas.data(), all.data(), 2 * (int) areas.size(), MPI_DOUBLE, MPI_SUM, world);
   for (std::size_t k = 0; k < all.size(); k++) {
     std::array<double, 4> first;
-    if (!(all[k][0] > MUCH * all[k][1]) || !notes[k].tell(world, first)) continue;
+    if (!(all[k][0] > MUCH * all[k][1]) || !notes[k].report(world, first)) continue;
     found = {(int) k, {first[1], first[2], first[3]}};
     return warned = true;
   }

@@ -36,7 +36,7 @@ class MPMHeatThin {
   void take(int entry, const MPMHeatBody &, const double *at, const double *into, double area);
   /** Called after a check: returns true once, if thin bodies make up much of the area of an entry.
    *  Collective. */
-  bool tell(MPI_Comm, Found &);
+  bool report(MPI_Comm, Found &);
 
  private:
   int steps = 0;

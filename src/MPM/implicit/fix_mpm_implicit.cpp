@@ -15,7 +15,7 @@
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_ledger.h"
-#include "field/mpm_rest.h"
+#include "field/mpm_strain.h"
 #include "field/mpm_time_limit.h"
 #include "implicit/mpm_mls_rotation.h"
 #include "transfer/kernels.h"

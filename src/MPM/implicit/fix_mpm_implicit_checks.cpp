@@ -13,7 +13,6 @@
 #include "base/mpm_options.h"
 #include "contact/fix_mpm_contact.h"
 #include "elements/fix_mpm_elements.h"
-#include "field/mpm_body_contact.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"

@@ -22,9 +22,8 @@
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_frame.h"
-#include "field/mpm_heat_sink.h"
-#include "field/mpm_refined_body.h"
-#include "field/mpm_rest.h"
+#include "field/mpm_interfaces.h"
+#include "field/mpm_strain.h"
 #include "implicit/mpm_mls_rotation.h"
 #include "walls/fix_mpm_boundary.h"
 

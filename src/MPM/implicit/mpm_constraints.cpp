@@ -9,7 +9,6 @@
 #include "implicit/mpm_constraints.h"
 
 #include "contact/mpm_ties.h"
-#include "field/mpm_body_contact.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_plan.h"
 
@@ -115,7 +114,7 @@ bool MPMConstraints::is_projection()
 
 void MPMConstraints::act(double *v)
 {
-  for (auto *contact : contacts) contact->forget_pushes();
+  for (auto *contact : contacts) contact->clear_impulses();
   act_by_walls(v);
   if (touching) ties->close(v);
 }

@@ -113,13 +113,13 @@ class MPMConstraints {
   /** Walls carry these forces on nodes: finds where they do no work on free motions. */
   void carry(double *force) const
   {
-    for (auto *contact : contacts) contact->bear_carried(nodes.field, force);
+    for (auto *contact : contacts) contact->constrain_carried(nodes.field, force);
   }
   /** Sets the velocities that nodes will have when contacts act on them next, with this share of
    *  friction. */
   void set_final_velocities(const double *v, double share) const
   {
-    for (auto *contact : contacts) contact->foresee_velocities(v, share);
+    for (auto *contact : contacts) contact->predict_velocities(v, share);
   }
   /** Contacts get the impulses of the last act(), which brought nodes to rest at walls. */
   void take_stop() const

@@ -40,7 +40,7 @@
 #include "implicit/mpm_coupled_pressure.h"
 
 #include "field/mpm_field.h"
-#include "field/mpm_node_pressure.h"
+#include "field/mpm_forces.h"
 #include "field/mpm_node_system.h"
 #include "implicit/mpm_constraints.h"
 #include "implicit/mpm_force_balance.h"

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_MOTION_SYSTEM_H
 #define LMP_MPM_MOTION_SYSTEM_H
 
-#include "field/mpm_lattice_ranks.h"
+#include "field/mpm_node_system.h"
 #include "implicit/mpm_implicit_parts.h"
 #include "solve/krylov.h"
 #include "solve/spline_multigrid.h"

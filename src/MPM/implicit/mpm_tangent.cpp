@@ -20,9 +20,9 @@
 #include "elements/fix_mpm_elements.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_forces.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_time_limit.h"
-#include "field/mpm_trial_forces.h"
 #include "math/matrix.h"
 #include "solve/bytes_of.h"
 

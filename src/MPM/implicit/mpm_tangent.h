@@ -122,7 +122,7 @@ class MPMTangent : public MPMTrialMotion {
   // law and the round-off of its stress are both some 1e-10 of its tangent
   static constexpr double DIFFERENCE = 6.0e-6;
 
-  // forces between points, see mpm_trial_forces.h: of elements, then of loads
+  // forces between points, see MPMTrialForces: of elements, then of loads
   std::vector<MPMTrialForces *> between;
   std::size_t nelements = 0;
 

@@ -14,8 +14,8 @@
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_forces.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_plan.h"
-#include "field/mpm_trial_forces.h"
 #include "math/matrix.h"
 
 #include <algorithm>

@@ -16,7 +16,7 @@
 #include "implicit/mpm_tangent.h"
 
 #include "field/fix_mpm_material.h"
-#include "field/mpm_trial_forces.h"
+#include "field/mpm_interfaces.h"
 #include "math/matrix.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@
 
 #include "implicit/mpm_tangent.h"
 
-#include "field/mpm_trial_forces.h"
+#include "field/mpm_interfaces.h"
 
 #include <algorithm>
 #include <unordered_map>

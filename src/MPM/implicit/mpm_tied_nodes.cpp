@@ -6,9 +6,9 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "field/mpm_line_ties.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_plan.h"
+#include "field/mpm_trial_contact.h"
 #include "implicit/mpm_constraints.h"
 #include "math/sets.h"
 #include "solve/lattice_nodes.h"

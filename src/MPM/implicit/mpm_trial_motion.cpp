@@ -9,7 +9,7 @@
 #include "implicit/mpm_trial_motion.h"
 
 #include "base/mpm_points.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "math/matrix.h"
 #include "solve/bytes_of.h"
 

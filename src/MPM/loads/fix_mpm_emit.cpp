@@ -18,9 +18,9 @@
 #include "base/mpm_options.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
-#include "field/mpm_fluid.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_strain.h"
 #include "loads/mpm_inlet.h"
@@ -63,7 +63,7 @@ Options MPMEmitOptions::declare(int dim)
   using namespace option;
   Options o("fix mpm/emit");
   o.add("region",
-        {text(region_id, "region-ID", "region of the mouth, through which material flows in")})
+        {text(region_id, "region-ID", "region of the inlet, through which material flows in")})
       .once()
       .standard("none, must be given");
   o.add("velocity",
@@ -86,7 +86,7 @@ Options MPMEmitOptions::declare(int dim)
       .standard("by ppc");
   o.add("area",
         {number(area, "A", POSITIVE, "distance^2 (2d: distance)",
-                "area of the cross section of the mouth, if it is known; around an axis of "
+                "area of the cross section of the inlet, if it is known; around an axis of "
                 "symmetry, area of the annulus")})
       .standard("found from the region");
   o.add("temperature",
@@ -97,7 +97,7 @@ Options MPMEmitOptions::declare(int dim)
       .standard("temperature of the material");
   o.add("move",
         {variables(move, 3, "wx wy wz", "velocity",
-                   "velocity of the mouth, can be variables; the velocity of the material is "
+                   "velocity of the inlet, can be variables; the velocity of the material is "
                    "relative to it")})
       .once()
       .standard("0 0 0");
@@ -105,7 +105,7 @@ Options MPMEmitOptions::declare(int dim)
     const bool across = velocity[2].value != 0.0 || !velocity[2].variable.empty() ||
         move[2].value != 0.0 || !move[2].variable.empty() || normal[2] != 0.0;
     return OptionRules{
-        {region_id.empty(), "", "needs a mouth: use the keyword region"},
+        {region_id.empty(), "", "needs an inlet: use the keyword region"},
         {!has_velocity, "", "needs the velocity of the flow: use the keyword velocity"},
         {spacing > 0.0 && ppc != 2, "spacing",
          "and ppc cannot be given together: use either of them"},
@@ -237,7 +237,7 @@ void FixMPMEmit::refuse_combinations() const
       {"mpm/pore", "new points would have no water in their pores"},
       {"mpm/mixture", "one of the two phases would come alone"},
       {"mpm/handshake", "its weights are those of the points at the start"},
-      {"mpm/implicit", "its solver does not know the nodes of the mouth"},
+      {"mpm/implicit", "its solver does not know the nodes of the inlet"},
       {"mpm/relax", "a flow does not come to rest"}};
   for (const auto &[style, why] : others)
     for (const auto *other : modify->get_fix_list())
@@ -296,7 +296,7 @@ void FixMPMEmit::setup_pre_exchange()
   if (there)
     error->all(
         FLERR, Error::NOLASTLINE,
-        "Fix mpm/emit {}: point {} is in the mouth at the start, which this fix fills: leave "
+        "Fix mpm/emit {}: point {} is in the inlet at the start, which this fix fills: leave "
         "region {} out when points are made",
         id, there, region_id);
   past.travel = inlet->length;
@@ -326,7 +326,7 @@ void FixMPMEmit::make_inlet()
   const Fix &grid = fluid ? dynamic_cast<const Fix &>(*fluid) : field->fix;
   if (inlet->length < h)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/emit {}: the mouth is {:.6g} long along the flow, less than a cell of fix "
+               "Fix mpm/emit {}: the inlet is {:.6g} long along the flow, less than a cell of fix "
                "{} {} ({:.6g}): make region {} longer",
                id, inlet->length, grid.style, grid.id, h, region_id);
   if (layer > h * (1.0 + 1.0e-9) && comm->me == 0)
@@ -562,7 +562,7 @@ void FixMPMEmit::emit()
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/emit {}: {} of {} new points are outside of the box at step {}: enlarge it, or "
-        "stop the mouth before it gets there",
+        "stop the inlet before it gets there",
         id, npoint - (bigint) all.points, npoint, update->ntimestep);
   past.total.add(all);
   if (field) field->guard->brought += all.points;

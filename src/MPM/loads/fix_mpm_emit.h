@@ -69,7 +69,7 @@ class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
   double compute_vector(int) override;
   double memory_usage() override;
 
-  Turn turn() const override { return MOUTHS; }
+  Turn turn() const override { return INLETS; }
   bool looks_beyond_points() const override { return false; }
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override { return false; }
   void topology_changed(MPMField &) override;

@@ -105,7 +105,8 @@ double MPMFace::stress_share_cut(double depth)
    elements of a mesh), as their volumes tell nothing of the surface
 ------------------------------------------------------------------------- */
 
-double MPMFace::of_parts(const MPMField &field, int groupbit, const MPMRegionSurface &surface) const
+double MPMFace::spacing_of_parts(const MPMField &field, int groupbit,
+                                 const MPMRegionSurface &surface) const
 {
   constexpr int NBIN = 512;         // for edges within a factor of 16
   constexpr double SAME = 0.005;    // edges that differ by less are the same
@@ -178,14 +179,14 @@ void MPMFace::find(const MPMField &field, int groupbit,
   const int dim = field.lattice.dim;
   const MPMRegionSurface surface(region, dim);
   region->prematch();
-  const double of_whole = of_parts(field, groupbit, surface);
-  const bool parts = of_whole > 0.0;
+  const double whole = spacing_of_parts(field, groupbit, surface);
+  const bool parts = whole > 0.0;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!(atom->mask[i] & groupbit) || !field.is_point(i) || field.is_element_node(i)) continue;
     const double *const x = atom->x[i];
     if (!is_inside(x)) continue;
     const double volume = atom->vfrac[i] * field.points->jacobian(i);
-    const double apart = parts ? of_whole
+    const double apart = parts ? whole
         : spacing > 0.0        ? spacing
                                : std::pow(volume / field.frame->circle(x[0]), 1.0 / dim);
     const double far = 1.01 * DEEPEST * apart, depth = std::fabs(surface.distance(x, far)) / apart;

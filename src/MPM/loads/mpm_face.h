@@ -110,7 +110,7 @@ class MPMFace : protected Pointers {
   double sums[9] = {};
 
   bool is_inside(const double *x) const;
-  double of_parts(const MPMField &, int groupbit, const class MPMRegionSurface &) const;
+  double spacing_of_parts(const MPMField &, int groupbit, const class MPMRegionSurface &) const;
 };
 
 }    // namespace LAMMPS_NS

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_MOMENT_H
 #define LMP_MPM_MOMENT_H
 
-#include "field/mpm_trial_forces.h"
+#include "field/mpm_interfaces.h"
 
 #include "pointers.h"
 

@@ -12,8 +12,8 @@
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
-#include "field/mpm_integrators.h"
 #include "field/mpm_physics.h"
+#include "field/mpm_setup_checks.h"
 #include "field/mpm_time_limit.h"
 #include "material/batch_kernels.h"
 #include "material/material.h"
@@ -234,6 +234,7 @@ void FixMPMMesh::init()
   if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
   if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
   atom->sortfreq = 0;
+  make_plan();
 }
 
 /** Bodies with their own velocities at the nodes. */
@@ -452,27 +453,62 @@ void FixMPMMesh::pre_neighbor()
 
 /* ---------------------------------------------------------------------- */
 
+void FixMPMMesh::make_plan()
+{
+  using Data = MPMStageData;
+  constexpr Data::Name CELLS = "cells", LOADS = "loads";
+  stages.clear();
+  if (!total)
+    stages.add("cells of points", {Data::POSITION}, {CELLS}, [this] {
+      body->find_places();
+      if (body->lacks_nodes()) body->find_ranks();
+    });
+  stages.add("loads", {CELLS, Data::OWN}, {LOADS}, [this] {
+    check_dt();
+    forces->evaluate();
+    forces->clear_sums();
+    if (total && forces->has_pressure())
+      forces->follow(body->counts_cell, body->positions, body->ranks);
+  });
+  if (heat)
+    stages.add("heat", {Data::POSITION, Data::DEFORMATION, Data::HISTORY, Data::MASS, CELLS},
+               {Data::HISTORY, Data::OWN}, [this] {
+                 heat->conduct(body->bodies(), update->dt);
+               });
+  stages.add("points to nodes",
+             {Data::POSITION, Data::VELOCITY, Data::AFFINE, Data::DEFORMATION, Data::STRESS,
+              Data::MASS, Data::FORCE, CELLS},
+             {Data::NODES}, [this] {
+               body->points_to_nodes();
+               if (steps == 0 && forces->has_loads())
+                 forces->warn_of_lost_loads(fmt::format("Fix mpm/mesh {}", id), [this](int node) {
+                   return body->counts_mass_at(node);
+                 });
+             });
+  stages.add("momentum equation", {Data::NODES, LOADS}, {Data::NODES, Data::OWN}, [this] {
+    body->find_velocities();
+  });
+  stages.add("nodes to points", {Data::VELOCITY, Data::NODES, CELLS}, {Data::VELOCITY}, [this] {
+    body->nodes_to_points();
+  });
+  if (musl)
+    stages.add("velocities back to nodes",
+               {Data::POSITION, Data::VELOCITY, Data::AFFINE, Data::MASS, Data::NODES, CELLS},
+               {Data::NODES}, [this] {
+                 body->map_back();
+               });
+  stages.add(
+      "motion and strain",
+      {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::HISTORY, Data::NODES, CELLS},
+      {Data::POSITION, Data::AFFINE, Data::DEFORMATION, Data::STRESS, Data::HISTORY, Data::OWN},
+      [this] {
+        body->move_and_strain();
+      });
+}
+
 void FixMPMMesh::initial_integrate(int)
 {
-  if (!total) {
-    body->find_places();
-    if (body->lacks_nodes()) body->find_ranks();
-  }
-  check_dt();
-  forces->evaluate();
-  forces->clear_sums();
-  if (total && forces->has_pressure())
-    forces->follow(body->counts_cell, body->positions, body->ranks);
-  if (heat) heat->conduct(body->bodies(), update->dt);
-  body->points_to_nodes();
-  if (steps == 0 && forces->has_loads())
-    forces->warn_of_lost_loads(fmt::format("Fix mpm/mesh {}", id), [this](int node) {
-      return body->counts_mass_at(node);
-    });
-  body->find_velocities();
-  body->nodes_to_points();
-  if (musl) body->map_back();
-  body->move_and_strain();
+  stages.run();
   steps++;
 }
 

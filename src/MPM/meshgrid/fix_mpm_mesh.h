@@ -15,6 +15,7 @@ FixStyle(mpm/mesh,FixMPMMesh);
 #ifndef LMP_FIX_MPM_MESH_H
 #define LMP_FIX_MPM_MESH_H
 
+#include "base/mpm_stage_list.h"
 #include "base/mpm_state.h"
 #include "base/mpm_step_limit.h"
 #include "declare/option.h"
@@ -55,14 +56,19 @@ class FixMPMMesh :
 
   void visit_batches(int group_bits, const BatchVisitor &) override;
 
+  /** The stages of a step; known from init() on. */
+  const MPMStageList &plan() const { return stages; }
+
  private:
   std::unique_ptr<MPM_NS::BackgroundMesh> mesh;
   std::unique_ptr<MPMMeshForces> forces;
   std::unique_ptr<MPMMeshBody> body;
   FixMPMMeshContact *contact = nullptr;
   FixMPMMeshHeat *heat = nullptr;
+  MPMStageList stages;
   bigint steps = 0;
 
+  void make_plan();
   void find_contact();
   void find_heat();
   void check_points();

@@ -96,7 +96,7 @@ struct ComputeMPMAtom::Quantity {
   std::string name;
   double (Point::*of_point)(int component) const;
   std::vector<std::string> components = {""};    // what follows the name
-  void (*of_batch)(const Material &, const Batch &, double pressure_to_energy, double *) = nullptr;
+  void (*evaluate)(const Material &, const Batch &, double pressure_to_energy, double *) = nullptr;
 };
 
 // customize by adding a line: names of the form group/component can be asked for as group/*
@@ -275,8 +275,8 @@ void ComputeMPMAtom::compute_peratom()
             const auto *quantity = columns[n].quantity;
             const int index =
                 quantity || columns[n].physics ? -1 : material.find_history(columns[n].name);
-            if (quantity && quantity->of_batch)
-              quantity->of_batch(*material.material, batch, 1.0 / force->nktv2p, value);
+            if (quantity && quantity->evaluate)
+              quantity->evaluate(*material.material, batch, 1.0 / force->nktv2p, value);
             else if (index >= 0)
               std::copy_n(batch.history[index], batch.n, value);
             else

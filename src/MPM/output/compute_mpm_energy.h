@@ -17,7 +17,7 @@ ComputeStyle(mpm/energy,ComputeMPMEnergy);
 
 #include "compute.h"
 #include "field/mpm_ledger.h"
-#include "watch/mpm_point_energies.h"
+#include "watch/mpm_point_summary.h"
 
 #include <string>
 #include <vector>

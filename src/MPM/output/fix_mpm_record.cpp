@@ -8,7 +8,7 @@
 
 #include "output/fix_mpm_record.h"
 
-#include "base/mpm_broadcast.h"
+#include "base/mpm_input.h"
 #include "base/mpm_options.h"
 
 #include "comm.h"

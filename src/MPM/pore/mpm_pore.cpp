@@ -48,7 +48,6 @@
 #include "pore/mpm_pore.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
@@ -476,7 +475,7 @@ void MPMPore::begin_step(const MPMRows &state, const MPMRows &flow, const double
   if (motion) surface.share_area(nodes);
 }
 
-void MPMPore::take_off()
+void MPMPore::separate_water()
 {
   if (surface.any()) {
     surface.find_push(nodes, of_flow);
@@ -497,7 +496,7 @@ void MPMPore::take_off()
       }
     }
   }
-  motion->take_off();
+  motion->separate();
 }
 
 /* ----------------------------------------------------------------------

@@ -251,7 +251,7 @@ void MPMPoreFlow::begin(bool with_flow)
 
 void MPMPoreFlow::separate_inertia()
 {
-  for (auto *field : wet) field->take_off();
+  for (auto *field : wet) field->separate_water();
 }
 
 void MPMPoreFlow::find_greatest_rates()

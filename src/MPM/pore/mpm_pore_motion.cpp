@@ -61,7 +61,6 @@
 #include "pore/mpm_pore_motion.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_points.h"
 #include "field/mpm_field.h"
 #include "field/mpm_passes.h"
@@ -236,7 +235,7 @@ void MPMPoreMotion::sum(std::vector<double> &to, const Wanted &wanted, const Wei
   field.nodes.sum(to.data(), WIDTH, 0, 4);
 }
 
-void MPMPoreMotion::take_off()
+void MPMPoreMotion::separate()
 {
   sum(nodes, nullptr, [&](int i, double &weight, double *vector) {
     weight = share[i];

@@ -59,7 +59,7 @@ class MPMPoreMotion : protected Pointers {
   double response(int i, const Pores &) const;
   /** Call when nodes have mass, momentum, and forces, summed over ranks. Subtracts from these the
    *  part of the water that moves relative to the soil. */
-  void take_off();
+  void separate();
   /** Call when nodes have their final velocities. Restores their mass, and finds the new flows. */
   void move();
   /** Volume times flow of a point [volume*velocity]. */

@@ -8,7 +8,7 @@
 
 #include "pore/mpm_pore_options.h"
 
-#include "base/mpm_steps_or_auto.h"
+#include "base/mpm_options.h"
 
 #include <algorithm>
 
@@ -106,10 +106,10 @@ Options MPMPoreOptions::declare(int dim)
                {"u-v-p", U_V_P,
                 "the water has inertia relative to the soil: fast loads, and soils of high "
                 "permeability"}})});
-  const auto of_soil = [this](const char *keyword, bool of_retention) {
+  const auto has_soil = [this](const char *keyword, bool with_retention) {
     if (soils.empty())
       without_soil = keyword;
-    else if (of_retention && !soils.back().retention.can_dry())
+    else if (with_retention && !soils.back().retention.can_dry())
       without_retention = keyword;
     else
       return true;
@@ -128,8 +128,8 @@ Options MPMPoreOptions::declare(int dim)
               {per_pressure(), number(retention.n, "n", {1.0, UNBOUNDED, false}, "1", "exponent")}},
              {"gardner", MPMRetention::GARDNER, "exp(-alpha s) (Gardner)", {per_pressure()}}})},
         "effective saturation of the soil before this keyword, which can lose its water")
-      .then([this, of_soil] {
-        if (!of_soil("retention", false)) return;
+      .then([this, has_soil] {
+        if (!has_soil("retention", false)) return;
         auto &r = soils.back().retention;
         r.law = retention.law;
         r.alpha = retention.alpha;
@@ -140,8 +140,8 @@ Options MPMPoreOptions::declare(int dim)
         {number(retention.least, "Sr", {0.0, 1.0, true, false}, "1", "residual saturation"),
          number(retention.most, "Ss", {0.0, 1.0, false, true}, "1", "saturation without suction")},
         "range of the saturation of the soil before this keyword")
-      .then([this, of_soil] {
-        if (!of_soil("saturation", true)) return;
+      .then([this, has_soil] {
+        if (!has_soil("saturation", true)) return;
         soils.back().retention.least = retention.least;
         soils.back().retention.most = retention.most;
       })
@@ -155,8 +155,8 @@ Options MPMPoreOptions::declare(int dim)
                 {number(retention.power, "e", NOT_NEGATIVE, "1",
                         "power of the effective saturation")}}})},
         "relative permeability of the soil before this keyword")
-      .then([this, of_soil] {
-        if (!of_soil("relative", true)) return;
+      .then([this, has_soil] {
+        if (!has_soil("relative", true)) return;
         soils.back().retention.flow = retention.flow;
         soils.back().retention.power = retention.power;
       })
@@ -171,8 +171,8 @@ Options MPMPoreOptions::declare(int dim)
             },
             {{"saturation", 0, "the saturation"}, {"effective", 1, "the effective saturation"}})},
         "share of the water pressure in the effective stress of the soil before this keyword")
-      .then([this, of_soil] {
-        if (of_soil("bishop", true))
+      .then([this, has_soil] {
+        if (has_soil("bishop", true))
           soils.back().retention.bishop_effective = retention.bishop_effective;
       })
       .standard("saturation");

@@ -38,7 +38,6 @@
 #include "pore/mpm_pore_surface.h"
 
 #include "atom.h"
-#include "base/mpm_clear.h"
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "domain.h"

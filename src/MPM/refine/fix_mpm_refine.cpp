@@ -16,7 +16,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
-#include "field/mpm_heat_sink.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 #include "implicit/fix_mpm_relax.h"

@@ -15,10 +15,10 @@ FixStyle(mpm/refine,FixMPMRefine);
 #ifndef LMP_FIX_MPM_REFINE_H
 #define LMP_FIX_MPM_REFINE_H
 
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_reach.h"
-#include "field/mpm_refined_body.h"
 #include "fix.h"
 
 #include <memory>

@@ -129,7 +129,7 @@ void BlockRows::multiply(const double *x, double *y)
   if (!all.empty()) std::memcpy(y, all.data(), all.size());
 }
 
-std::vector<double> BlockRows::of_all(const std::vector<double> &mine, int n) const
+std::vector<double> BlockRows::gather_rows(const std::vector<double> &mine, int n) const
 {
   std::vector<int> sizes(ranks->number());
   for (int p = 0; p < ranks->number(); p++)

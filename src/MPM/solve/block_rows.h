@@ -45,7 +45,7 @@ class BlockRows {
   void multiply(const double *x, double *y);
   /** Gathers rows of all ranks, [rows][n], from the rows of each rank, mine [rows of this rank][n].
    *  Collective. */
-  std::vector<double> of_all(const std::vector<double> &mine, int n) const;
+  std::vector<double> gather_rows(const std::vector<double> &mine, int n) const;
   /** Contribution of the rows of this rank to P^T A P, as blocks of one triangle, where P gives the
    *  parts of each function in functions of the next level. next: number of functions of that
    *  level. */

@@ -73,7 +73,7 @@ void CoarseLevels::make_smoother(Level &level, const LatticeNodes &nodes, const 
     own.push_back(0.0);
     for (int a = 0; D && a < w; a++) own.back() += D[a * w + a];
   }
-  const auto in_rim = rim_of(nodes, A.of_all(own, 1), dim, order + 1, cells);
+  const auto in_rim = rim_of(nodes, A.gather_rows(own, 1), dim, order + 1, cells);
   std::vector<int> number(nnodes, -1);
   std::vector<LatticeIndex> rim_nodes;
   for (int node = 0; node < nnodes; node++)
@@ -102,7 +102,7 @@ void CoarseLevels::make_smoother(Level &level, const LatticeNodes &nodes, const 
       std::copy_n(value, ww, of_rim.back().value);
     });
   }
-  level.inverse = A.of_all(own, ww);
+  level.inverse = A.gather_rows(own, ww);
   for (const auto &b : ranks.gather(of_rim)) level.rim_factors->add(b.row, b.column, b.value);
   usable = level.rim_factors->factorize() && usable;
   if (!usable) return;

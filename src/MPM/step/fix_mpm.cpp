@@ -10,7 +10,6 @@
 
 #include "atom.h"
 #include "base/mpm_options.h"
-#include "base/mpm_pair_styles.h"
 #include "base/mpm_points.h"
 #include "base/mpm_version.h"
 #include "comm.h"
@@ -25,7 +24,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_guard.h"
 #include "field/mpm_halo.h"
-#include "field/mpm_listed_points.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
@@ -37,12 +36,13 @@
 #include "modify.h"
 #include "neighbor.h"
 #include "output.h"
+#include "step/mpm_grains.h"
 #include "step/mpm_stages.h"
 #include "update.h"
 #include "watch/mpm_continuation.h"
 #include "watch/mpm_energy_watch.h"
 #include "watch/mpm_fracture_watch.h"
-#include "watch/mpm_point_extremes.h"
+#include "watch/mpm_point_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,10 +51,7 @@
 using namespace LAMMPS_NS;
 using namespace FixConst;
 
-/* ----------------------------------------------------------------------
-   fix ID group mpm H keyword value ...
-------------------------------------------------------------------------- */
-
+/** Fix ID group mpm H keyword value ... */
 FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   if (!MPMPoints::get(atom))
@@ -98,14 +95,10 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 
 FixMPM::~FixMPM() = default;
 
-/* ---------------------------------------------------------------------- */
-
 int FixMPM::setmask()
 {
   return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | PRE_FORCE;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::init()
 {
@@ -113,20 +106,19 @@ void FixMPM::init()
     error->all(FLERR, "Fix mpm requires run_style verlet");
   if (update->whichflag == 2)
     error->all(FLERR,
-               "Fix mpm cannot be used with minimize, which would move material points like "
-               "atoms: minimize before the fix is defined");
+               "Fix mpm cannot be used with minimize, which would move material points like atoms: "
+               "minimize before the fix is defined");
   field->points = MPMPoints::get(atom);
   field->check_box();
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR,
-               "Fix mpm requires a box of constant size and shape: remove the fix that "
-               "changes it, or use fix mpm/deform to strain a periodic cell");
+               "Fix mpm requires a box of constant size and shape: remove the fix that changes it, "
+               "or use fix mpm/deform to strain a periodic cell");
   if (comm->me == 0)
     for (const auto &text : MPMFieldOptions(field->options).declare(3).warnings())
       error->warning(FLERR, text);
 
   // all fields step together, driven by the first one
-
   plan.reset();
   if (modify->get_fix_by_style("^mpm$")[0] == this) {
     for (auto *each : MPMField::all(lmp))
@@ -138,25 +130,20 @@ void FixMPM::init()
   }
 
   // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
-  // material points may well be moved by others; check_integrators() looks at the points
-
+  // material points may well be moved by others; MPMSetupChecks looks at the points
   time_integrate = 1;
   for (auto *other : modify->get_fix_list())
     if (other != this && other->time_integrate) time_integrate = 0;
 
   // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none. It
   // would warn of this one, too, as soon as there is a pair style
-
   const double nothing = 1.0e-8 * field->lattice.h;
   if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
   if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
 
   // points are kept in order of blocks and cells here
-
   atom->sortfreq = 0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::check_fields() const
 {
@@ -177,11 +164,8 @@ void FixMPM::check_fields() const
   check_include();
 }
 
-/* ----------------------------------------------------------------------
-   Points that touch something must be in the neighbor lists; none does where the only others are
-   grains in a fluid
-------------------------------------------------------------------------- */
-
+/** Points that touch something must be in the neighbor lists; none does where the only others are
+ *  grains in a fluid. */
 void FixMPM::check_include() const
 {
   const int listed = neighbor->includegroup;
@@ -193,8 +177,6 @@ void FixMPM::check_include() const
              "mpm/surface with keyword group {}, or the group of a fix mpm/immersed",
              group->names[listed], group->names[listed]);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::setup_pre_exchange()
 {
@@ -214,7 +196,6 @@ void FixMPM::setup_pre_neighbor()
   checks->run(MPMSetupChecks::PLACES, first);
 
   // other physics may ask for the points of any field
-
   const auto &all = field->plan->fields;
   if (field.get() != all.back()) return;
   for (auto *physics : find_fixes<MPMPhysics>(lmp)) physics->setup_points();
@@ -238,14 +219,10 @@ void FixMPM::setup(int)
   field->time_limit->setup();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPM::initial_integrate(int /*vflag*/)
 {
   if (plan) plan->step();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::pre_exchange()
 {
@@ -254,12 +231,9 @@ void FixMPM::pre_exchange()
   if (plan) field->guard->tell_lost_atoms();
 }
 
-/* ----------------------------------------------------------------------
-   after exchange and borders: restore the order of points when it has decayed.
-   At steps with a restart file the order must not depend on history, so that a run that
-   continues from the file sums in the same order.
-------------------------------------------------------------------------- */
-
+/** After exchange and borders: restore the order of points when it has decayed. At steps with a
+ *  restart file the order must not depend on history, so that a run that continues from the file
+ *  sums in the same order. */
 void FixMPM::pre_neighbor()
 {
   int flag = field->map->wants_sort(), flag_all;
@@ -269,12 +243,9 @@ void FixMPM::pre_neighbor()
   field->map->valid = false;
 }
 
-/* ----------------------------------------------------------------------
-   LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify include).
-   Nothing exerts torques on the others, so that these stay zero until atoms change their places in
-   memory
-------------------------------------------------------------------------- */
-
+/** LAMMPS has set to zero the forces of the atoms in the neighbor lists only (neigh_modify
+ *  include). Nothing exerts torques on the others, so that these stay zero until atoms change their
+ *  places in memory. */
 void FixMPM::pre_force(int)
 {
   if (!plan || !neighbor->includegroup) return;
@@ -284,8 +255,6 @@ void FixMPM::pre_force(int)
   if (atom->torque_flag && !no_torques) memset(&atom->torque[atom->nfirst][0], 0, n);
   no_torques = true;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPM::post_run()
 {
@@ -299,12 +268,9 @@ void FixMPM::post_run()
     field->plan->report(*field, bytes_per_point(), point_extremes(lmp, *field));
 }
 
-/* ----------------------------------------------------------------------
-   scalar: number of points; vector: blocks with points, active blocks, points per block,
-   updates of the topology and sorts in this run, halo bytes sent per step; points, mass and
-   momentum deleted so far
-------------------------------------------------------------------------- */
-
+/** Scalar: number of points; vector: blocks with points, active blocks, points per block, updates
+ *  of the topology and sorts in this run, halo bytes sent per step; points, mass and momentum
+ *  deleted so far. */
 double FixMPM::compute_scalar()
 {
   double n = 0.0, all;
@@ -343,16 +309,9 @@ double FixMPM::bytes_per_point() const
   return bytes;
 }
 
-double FixMPM::memory_usage()
-{
-  return FixMPMState::memory_usage() + field->memory_usage();
-}
-
-/* ----------------------------------------------------------------------
-   totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
-   neighbor lists are made, the options that a run must go on with, the duration of the last step,
-   and what else the run has
-------------------------------------------------------------------------- */
+/** Totals of the ledger, what was deleted, which velocities the affine matrices belong to, when
+ *  neighbor lists are made, the options that a run must go on with, the duration of the last step,
+ *  and what else the run has. */
 
 namespace {
 struct Saved {
@@ -416,11 +375,10 @@ void FixMPM::restart(char *buf)
                       .declare(3)
                       .differences(std::string(text, text + saved.ntext));
   if (!differences.empty())
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm {} has other options than in the restart file: {}; give it those of the file, "
-        "or another ID to begin anew",
-        id, differences);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm {} has other options than in the restart file: {}; give it those of the "
+               "file, or another ID to begin anew",
+               id, differences);
 
   // without it, the first step counts for the one before, as in a run from the start
   double dt = 0.0;

@@ -49,7 +49,7 @@ class FixMPM : public FixMPMState, public MPMFieldOwner {
   void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
-  double memory_usage() override;
+  double memory_usage() override { return FixMPMState::memory_usage() + field->memory_usage(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
 

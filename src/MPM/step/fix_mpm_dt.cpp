@@ -15,8 +15,7 @@
 #include "comm.h"
 #include "error.h"
 #include "field/mpm_field.h"
-#include "field/mpm_fluid.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"
 #include "integrate.h"
@@ -30,7 +29,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -38,10 +36,7 @@ using namespace MPM_NS;
 static constexpr double ROUND_OFF = 1.0e-10;    // of times
 static constexpr double SAME = 1.0e-9;          // of limits of the time step
 
-/* ----------------------------------------------------------------------
-   fix ID all mpm/dt FRACTION keyword value ...
-------------------------------------------------------------------------- */
-
+/** Fix ID all mpm/dt FRACTION keyword value ... */
 Options MPMDtOptions::declare()
 {
   using namespace option;
@@ -93,8 +88,6 @@ FixMPMDt::FixMPMDt(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 
 FixMPMDt::~FixMPMDt() = default;
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMDt::init()
 {
   const auto limits = find_fixes<MPMStepLimit>(lmp);
@@ -116,12 +109,9 @@ void FixMPMDt::init()
     collisions = std::make_unique<MPMGrains>(lmp, fmt::format("Fix mpm/dt {} grains", id));
 }
 
-/* ----------------------------------------------------------------------
-   the step in which the volume of a point would change by STRAIN, at the largest rate of the steps
-   since the last look. A drop that is alone on the lattice breathes in a few steps: the rate of a
-   single one of them may be that of a turning point
-------------------------------------------------------------------------- */
-
+/** The step in which the volume of a point would change by STRAIN, at the largest rate of the steps
+ *  since the last look. A drop that is alone on the lattice breathes in a few steps: the rate of a
+ *  single one of them may be that of a turning point. */
 FixMPMDt::Limit FixMPMDt::strain_limit_local() const
 {
   Limit mine = carried;
@@ -134,10 +124,7 @@ FixMPMDt::Limit FixMPMDt::strain_limit_local() const
   return mine;
 }
 
-/* ----------------------------------------------------------------------
-   the smallest limit of all points of all fields, known to all ranks
-------------------------------------------------------------------------- */
-
+/** The smallest limit of all points of all fields, known to all ranks. */
 FixMPMDt::Limit FixMPMDt::point_limit() const
 {
   Limit mine = strain_limit_local();
@@ -157,23 +144,14 @@ FixMPMDt::Limit FixMPMDt::point_limit() const
   return smallest(mine);
 }
 
-/** The time step that a limit allows; without one, the largest number that there is. */
-double FixMPMDt::allowed(const Limit &limit) const
-{
-  return limit.dt < NO_POINTS.dt ? fraction * limit.dt : NO_POINTS.dt;
-}
-
-double FixMPMDt::of_grains(const Limit &limit) const
+double FixMPMDt::grain_dt(const Limit &limit) const
 {
   return limit.other == NO_GRAIN ? NO_POINTS.dt : allowed(limit);
 }
 
-/* ----------------------------------------------------------------------
-   Grains that will touch before the next look count, too; longest: bound of the time step until
-   then. At looks it is what points alone would allow, and not the time step of now, which a restart
-   may change
-------------------------------------------------------------------------- */
-
+/** Grains that will touch before the next look count, too; longest: bound of the time step until
+ *  then. At looks it is what points alone would allow, and not the time step of now, which a
+ *  restart may change. */
 FixMPMDt::Limit FixMPMDt::grain_limit(const Limit &points) const
 {
   double longest = points.dt < NO_POINTS.dt ? fraction * points.dt : grow * wanted;
@@ -215,14 +193,11 @@ FixMPMDt::Limit FixMPMDt::smallest(Limit mine) const
   return mine;
 }
 
-/* ----------------------------------------------------------------------
-   start of a run: the time step is set at once, without limit to its growth. When the state is the
-   one that the last run or the restart file left, then the time step is kept, so that a run in two
-   parts takes the same steps as one without a break. The neighbor lists are new ones: pairs of
-   grains that these have, and those at the end of the last run had not, do not make another state
-   of it, but are looked at as whenever lists are new.
-------------------------------------------------------------------------- */
-
+/** Start of a run: the time step is set at once, without limit to its growth. When the state is the
+ *  one that the last run or the restart file left, then the time step is kept, so that a run in two
+ *  parts takes the same steps as one without a break. The neighbor lists are new ones: pairs of
+ *  grains that these have, and those at the end of the last run had not, do not make another state
+ *  of it, but are looked at as whenever lists are new. */
 void FixMPMDt::setup_pre_force(int)
 {
   for (auto *field : MPMField::all(lmp)) field->time_limit->watch_volume = strain > 0.0;
@@ -232,7 +207,7 @@ void FixMPMDt::setup_pre_force(int)
   ended = false;
   time_at_start = elapsed_time(*update);
   wall_at_start = platform::walltime();
-  const double dt_grains = of_grains(limit);
+  const double dt_grains = grain_dt(limit);
   const bool goes_on = continues && update->dt == dt_left &&
       fabs(allowed(points) - limit_left) <= SAME * limit_left &&
       dt_grains <= (1.0 + SAME) * grains_left;
@@ -254,11 +229,8 @@ void FixMPMDt::setup_pre_force(int)
     change_dt(fit_to_end(wanted, 2));    // output of the last one is asked for at the end of a step
 }
 
-/* ----------------------------------------------------------------------
-   A run ends as with fix halt. Its last steps are equal parts of the time that is left, and no
-   longer than wanted; points that take one step in several of the run have moved at its end
-------------------------------------------------------------------------- */
-
+/** A run ends as with fix halt. Its last steps are equal parts of the time that is left, and no
+ *  longer than wanted; points that take one step in several of the run have moved at its end. */
 bool FixMPMDt::at_end() const
 {
   return until > 0.0 && until - elapsed_time(*update) <= ROUND_OFF * until;
@@ -291,12 +263,9 @@ void FixMPMDt::announce_end()
   modify->addstep_compute_all(last);
 }
 
-/* ----------------------------------------------------------------------
-   the limit of strain is kept at once, as in an impact the next look could be too late; that of
-   grains when there are new neighbor lists, as in old ones two that are about to touch may not be a
-   pair
-------------------------------------------------------------------------- */
-
+/** The limit of strain is kept at once, as in an impact the next look could be too late; that of
+ *  grains when there are new neighbor lists, as in old ones two that are about to touch may not be
+ *  a pair. */
 void FixMPMDt::end_of_step()
 {
   if (at_end()) return stop_run();
@@ -323,10 +292,7 @@ void FixMPMDt::look()
   if (limit.dt < NO_POINTS.dt) set_dt(std::min(fraction * limit.dt, grow * wanted));
 }
 
-/* ----------------------------------------------------------------------
-   set the time step, and tell everybody when it changes, as fix dt/reset does
-------------------------------------------------------------------------- */
-
+/** Set the time step, and tell everybody when it changes, as fix dt/reset does. */
 void FixMPMDt::set_dt(double dt)
 {
   if (dt_max > 0.0) dt = std::min(dt, dt_max);
@@ -355,9 +321,8 @@ std::string FixMPMDt::what_limits() const
   if (limit.other == 0.0) return fmt::format("the collision of grain {} with a wall", tag);
   if (tag == 0) return "a rigid body of fix mpm/rigid";
   if (limit.speed == 0.0)
-    return fmt::format("point {} (its change of volume, other physics, or the gas of a fix "
-                       "mpm/airbag)",
-                       tag);
+    return fmt::format(
+        "point {} (its change of volume, other physics, or the gas of a fix mpm/airbag)", tag);
   return fmt::format("point {} (wave speed {:.6g})", tag, limit.speed);
 }
 
@@ -375,13 +340,11 @@ void FixMPMDt::change_dt(double dt)
   nchanges++;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMDt::note_limits()
 {
   const Limit points = point_limit();
   limit_left = allowed(points);
-  grains_left = of_grains(grain_limit(points));
+  grains_left = grain_dt(grain_limit(points));
 }
 
 void FixMPMDt::post_run()
@@ -394,14 +357,12 @@ void FixMPMDt::post_run()
   if (ended)
     timer->reset_timeout();
   else if (comm->me == 0 && update->nsteps > 0 && !warned_of_rest)
-    error->warning(FLERR,
-                   "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run "
-                   "more steps",
-                   id, elapsed_time(*update), until);
+    error->warning(
+        FLERR,
+        "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run more steps",
+        id, elapsed_time(*update), until);
   warned_of_rest = warned_of_rest || update->nsteps > 0;    // once: runs can have many parts
 }
-
-/* ---------------------------------------------------------------------- */
 
 double FixMPMDt::compute_scalar()
 {
@@ -418,10 +379,9 @@ double FixMPMDt::compute_vector(int i)
   return passed > 0.0 ? (left / passed - 1.0) * (platform::walltime() - wall_at_start) : 0.0;
 }
 
-/* ----------------------------------------------------------------------
-   between runs: what the last one has left, as the next run compares with that; the fixes may not
-   be those of the last run. Files of older versions begin with the time step and have no options
-------------------------------------------------------------------------- */
+/** Between runs: what the last one has left, as the next run compares with that; the fixes may not
+ *  be those of the last run. Files of older versions begin with the time step and have no
+ *  options. */
 
 static constexpr double WITH_OPTIONS = -1.0;
 

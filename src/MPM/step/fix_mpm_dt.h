@@ -87,8 +87,11 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   Limit strain_limit_local() const;
   Limit grain_limit(const Limit &points) const;
   Limit grain_limit(const Limit &points, double longest) const;
-  double allowed(const Limit &) const;
-  double of_grains(const Limit &) const;
+  double allowed(const Limit &limit) const
+  {
+    return limit.dt < NO_POINTS.dt ? fraction * limit.dt : NO_POINTS.dt;
+  }
+  double grain_dt(const Limit &) const;
   void note_limits();
   std::vector<double> saved_options() const;
   Limit smallest(Limit) const;

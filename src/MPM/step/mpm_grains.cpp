@@ -47,16 +47,14 @@ static int steps_of(const Atom &atom, int i, int every)
   return atom.vfrac[i] > 0.0 ? every : 1;
 }
 
-/* ----------------------------------------------------------------------
-   Springs without damping: half a period, or, with the force k sqrt(R) delta^1.5, the time from the
-   first touch to the last,
-
-     2.94 delta_max / v,   k sqrt(R) delta_max^2.5 2/5 = m v^2 / 2,
-
-   with the velocity v of the first touch, which the energy of now has. What is damped takes longer,
-   but its velocity may decay faster: pi over the fastest rate of the contact holds for both.
-------------------------------------------------------------------------- */
-
+/** Springs without damping: half a period, or, with the force k sqrt(R) delta^1.5, the time from
+ *  the first touch to the last,
+ *
+ *    2.94 delta_max / v,   k sqrt(R) delta_max^2.5 2/5 = m v^2 / 2,
+ *
+ *  with the velocity v of the first touch, which the energy of now has. What is damped takes
+ *  longer, but its velocity may decay faster: pi over the fastest rate of the contact holds for
+ *  both. */
 double MPMGrains::duration(const Law &law, double m, double R, double overlap, double v)
 {
   const double never = std::numeric_limits<double>::infinity();
@@ -82,12 +80,9 @@ double MPMGrains::duration(const Law &law, double m, double R, double overlap, d
   return M_PI / (decay > rate ? decay + std::sqrt(decay * decay - rate * rate) : rate);
 }
 
-/* ----------------------------------------------------------------------
-   Forces in units of mass times acceleration. All of LAMMPS's formulas of damping have the mass in
-   units of mass, so that a force ~ mass gamma v becomes an acceleration ftm2v gamma v; in that of
-   tsuji and coeff_restitution, damp sqrt(m k) v, the factor of k takes one root of it.
-------------------------------------------------------------------------- */
-
+/** Forces in units of mass times acceleration. All of LAMMPS's formulas of damping have the mass in
+ *  units of mass, so that a force ~ mass gamma v becomes an acceleration ftm2v gamma v; in that of
+ *  tsuji and coeff_restitution, damp sqrt(m k) v, the factor of k takes one root of it. */
 MPMGrains::Law MPMGrains::in_units(Law law) const
 {
   const double ftm2v = force->ftm2v;
@@ -95,8 +90,6 @@ MPMGrains::Law MPMGrains::in_units(Law law) const
   law.damping *= law.damping_is == Law::BY_STIFFNESS ? std::sqrt(ftm2v) : ftm2v;
   return law;
 }
-
-/* ---------------------------------------------------------------------- */
 
 #if MPM_HAS_GRANULAR
 
@@ -200,11 +193,8 @@ MPMGrains::Law MPMGrains::law_of(const Style &style, int itype, int jtype) const
   return law_of_model(pair->models_list[pair->types_indices[itype][jtype]]);
 }
 
-/* ----------------------------------------------------------------------
-   with planes, which may wiggle, and with regions, whose position is that of the last forces;
-   negative: none
-------------------------------------------------------------------------- */
-
+/** With planes, which may wiggle, and with regions, whose position is that of the last forces;
+ *  negative: none. */
 static double deepest_overlap(const FixWallGran &wall, Region *region, bigint now, const double *x,
                               double radius)
 {
@@ -225,10 +215,7 @@ static double deepest_overlap(const FixWallGran &wall, Region *region, bigint no
   return radius - std::min(x[d] - (wall.*&Wall::lo + shift), wall.*&Wall::hi + shift - x[d]);
 }
 
-/* ----------------------------------------------------------------------
-   each grain of the group counts wherever it is, as walls may move, with its whole velocity
-------------------------------------------------------------------------- */
-
+/** Each grain of the group counts wherever it is, as walls may move, with its whole velocity. */
 void MPMGrains::walls(int every, Collision &first) const
 {
   const int frozen = frozen_groups();
@@ -270,8 +257,6 @@ MPMGrains::Law MPMGrains::law_of_model(void *) const
 void MPMGrains::walls(int, Collision &) const {}
 
 #endif
-
-/* ---------------------------------------------------------------------- */
 
 int MPMGrains::frozen_groups() const
 {
@@ -321,12 +306,9 @@ void MPMGrains::pairs_of(const Style &style, double ahead, int every, Collision 
   }
 }
 
-/* ----------------------------------------------------------------------
-   Points of one body touch each other as soon as they have their usual diameter. A pair style of
-   grains that is there for other atoms then pushes them apart, besides the stress of the material:
-   a body is stiffer, and starts with energy where diameters are larger than distances
-------------------------------------------------------------------------- */
-
+/** Points of one body touch each other as soon as they have their usual diameter. A pair style of
+ *  grains that is there for other atoms then pushes them apart, besides the stress of the material:
+ *  a body is stiffer, and starts with energy where diameters are larger than distances. */
 void LAMMPS_NS::warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::string &who)
 {
   constexpr double TOUCH = 1.0001;
@@ -359,10 +341,9 @@ void LAMMPS_NS::warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::s
   MPI_Allreduce(&mine, &pairs, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
   MPI_Allreduce(&type, &first, 1, MPI_INT, MPI_MIN, lmp->world);
   if (pairs && lmp->comm->me == 0)
-    lmp->error->warning(
-        FLERR,
-        "{}: at least {} pairs of its material points touch as grains by the pair style, "
-        "whose forces are added to the stress of the material: use neigh_modify "
-        "exclude type {} {}, or keyword lists of fix mpm/surface",
-        who, pairs, first, first);
+    lmp->error->warning(FLERR,
+                        "{}: at least {} pairs of its material points touch as grains by the pair "
+                        "style, whose forces are added to the stress of the material: use "
+                        "neigh_modify exclude type {} {}, or keyword lists of fix mpm/surface",
+                        who, pairs, first, first);
 }

@@ -69,5 +69,9 @@ class MPMGrains : protected Pointers {
   void walls(int every, Collision &) const;
 };
 
+/** Warns if a pair style of grains acts between material points of the group that touch now. Called
+ *  after neighbor lists were made. */
+void warn_of_points_as_grains(LAMMPS *lmp, int groupbit, const std::string &who);
+
 }    // namespace LAMMPS_NS
 #endif

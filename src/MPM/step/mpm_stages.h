@@ -25,7 +25,7 @@ namespace MPMStages {
   /** Makes the list of stages of the scheme of all fields. */
   void make_scheme(MPMPlan &);
 
-  // mpm_stage_momentum.cpp: points to nodes, and the equation of motion there
+  // points to nodes, and the equation of motion there
 
   /** What points give to nodes: mass, momentum, and force; mass and momentum; or forces, added to
    *  records that have mass and momentum already. */
@@ -42,7 +42,7 @@ namespace MPMStages {
    *  forces. */
   void back_to_momentum(MPMField &);
 
-  // mpm_stage_points.cpp: nodes to points
+  // nodes to points
 
   /** Part of the strain update that is done while points move. */
   enum Strain {
@@ -69,7 +69,7 @@ namespace MPMStages {
    *  move the points with these velocities, if MPMField::mapped is there. */
   void strain_from_nodes(MPMField &, double dt, double share, double shift, bool moves = false);
 
-  // mpm_stage_light.cpp: nodes with almost no mass
+  // nodes with almost no mass
 
   /** Blends the velocities of these nodes, for gradients only. */
   void blend_light_nodes(MPMField &);
@@ -77,7 +77,7 @@ namespace MPMStages {
    *  and move the points. */
   void gradients_with_light_nodes(MPMField &, bool stress);
 
-  // mpm_stage_series.cpp: more terms of the inverse of the mass matrix
+  // more terms of the inverse of the mass matrix
 
   /** XPIC: applied to the old velocities. */
   void xpic(MPMField &);

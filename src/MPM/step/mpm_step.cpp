@@ -31,6 +31,7 @@ using Options = MPMFieldOptions;
 using Data = MPMStageData;
 const Data MOTION = {Data::POSITION, Data::VELOCITY, Data::AFFINE};
 const Data STATE = {Data::DEFORMATION, Data::STRESS, Data::HISTORY};
+const Data STATE_IN_BLOCKS = Data{Data::POSITION} + STATE + Data{Data::BLOCKS};
 const Data AT_NODES = {Data::NODES, Data::BLOCKS};
 const Data NODES_AND_OWN = {Data::NODES, Data::OWN};
 
@@ -61,11 +62,11 @@ void late_motion(MPMPlan &plan, MPMPlan::Wanted wanted = nullptr)
 
 void points_to_nodes(MPMPlan &plan, const char *name, Content content)
 {
-  const Data momentum = MOTION + Data{Data::MASS, Data::BLOCKS};
-  const Data forces = {Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::FORCE, Data::BLOCKS};
-  const Data reads = content == MOMENTUM ? momentum
-      : content == FORCE                 ? forces + AT_NODES
-                                         : momentum + forces;
+  const Data forces = {Data::DEFORMATION, Data::STRESS, Data::MASS, Data::FORCE, Data::BLOCKS};
+  const Data reads = content == MOMENTUM ? MOTION + Data{Data::MASS, Data::BLOCKS}
+      : content == FORCE
+      ? Data{Data::POSITION, Data::DEFORMATION, Data::STRESS, Data::FORCE} + AT_NODES
+      : MOTION + forces;
   plan.each(name, reads, {Data::NODES}, [content](MPMField &field) {
     MPMStages::points_to_nodes(field, content);
   });
@@ -110,7 +111,7 @@ void average_pressure(MPMPlan &plan)
   const auto average = [](MPMField &field) {
     field.locking->average_pressure();
   };
-  plan.each("averaged pressure", STATE + Data{Data::POSITION, Data::BLOCKS}, {Data::OWN}, average,
+  plan.each("averaged pressure", STATE_IN_BLOCKS, {Data::OWN}, average,
             with<&Options::averages_stress>);
 }
 
@@ -122,15 +123,14 @@ void begin(MPMPlan &plan)
   };
   plan.together("energy watch", MOTION + STATE + Data{Data::FORCE}, {Data::OWN}, watch,
                 with<&Options::watches_gain>);
-  const Data found = {Data::BLOCKS, Data::NODES, Data::OWN};
+  const Data found = AT_NODES + Data{Data::OWN};
   plan.together("topology", {Data::POSITION, Data::DEFORMATION}, found, [&plan]() {
     plan.find_blocks();
   });
   const auto smooth = [](MPMField &field) {
     field.smoothing->smooth();
   };
-  plan.each("smoother volumes", STATE + Data{Data::POSITION, Data::BLOCKS}, STATE, smooth,
-            with<&Options::smooths_volumes>);
+  plan.each("smoother volumes", STATE_IN_BLOCKS, STATE, smooth, with<&Options::smooths_volumes>);
   plan.place(MPMPlan::BEFORE_POINTS_TO_NODES);
   const auto add_torques = [](MPMField &field) {
     field.affine->add_torques();
@@ -177,7 +177,7 @@ void solve(MPMPlan &plan)
   const auto account = [](MPMField &field) {
     field.ledger.account_for_nodes();
   };
-  plan.each("energy of nodes", MOTION + STATE + AT_NODES + Data{Data::FORCE}, NODES_AND_OWN,
+  plan.each("energy of nodes", MOTION + STATE + Data{Data::FORCE} + AT_NODES, NODES_AND_OWN,
             account, has_ledger);
   plan.each("XPIC", Data{Data::POSITION, Data::MASS} + AT_NODES, {Data::VELOCITY, Data::NODES},
             xpic, with<&Options::has_xpic>);
@@ -230,8 +230,7 @@ void end(MPMPlan &plan)
   const auto look = [](MPMField &field) {
     field.fracture_watch->step();
   };
-  plan.each("fracture watch", STATE + Data{Data::POSITION, Data::BLOCKS}, {Data::OWN}, look,
-            with<&Options::watches_fracture>);
+  plan.each("fracture watch", STATE_IN_BLOCKS, {Data::OWN}, look, with<&Options::watches_fracture>);
   plan.each("checks", MOTION + STATE + AT_NODES, {Data::OWN}, checks);
   const auto finish = [](MPMField &field) {
     field.every->finish();

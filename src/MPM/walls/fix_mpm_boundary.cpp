@@ -37,13 +37,12 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
 {
   if (igroup != 0)
     error->all(FLERR, 1,
-               "Fix mpm/boundary acts on nodes, which have no group: use group all, and "
-               "keyword field to act on one of several fields");
+               "Fix mpm/boundary acts on nodes, which have no group: use group all, and keyword "
+               "field to act on one of several fields");
 
   int iarg = read_place(narg, arg);
 
   // arguments: what the wall does
-
   Options options = wall.declare(domain->dimension);
   read_options(lmp, options, narg, arg, iarg);
   if (options.given("velocity") && options.given("displacement"))
@@ -62,8 +61,8 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
         options.given("displacement");
     if (driven && region->dynamic)
       error->all(FLERR,
-                 "Fix mpm/boundary takes the velocity of region {} from its own motion: "
-                 "drop velocity, displacement, and rotate, or the motion of the region",
+                 "Fix mpm/boundary takes the velocity of region {} from its own motion: drop "
+                 "velocity, displacement, and rotate, or the motion of the region",
                  wall.region_id);
   }
 
@@ -96,19 +95,16 @@ int FixMPMBoundary::read_place(int narg, char **arg)
     }
     if (wall.face_list.empty())
       error->all(FLERR, iarg,
-                 "Unknown fix mpm/boundary wall {}: must be region or one or more of "
-                 "xlo xhi ylo yhi zlo zhi",
+                 "Unknown fix mpm/boundary wall {}: must be region or one or more of xlo xhi ylo "
+                 "yhi zlo zhi",
                  arg[iarg]);
   }
   return iarg;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void FixMPMBoundary::init()
 {
   // fields, in the order of their definition
-
   require_field(lmp, *this);
   nodes.clear();    // listed with the topology
   wall.fields.clear();
@@ -148,11 +144,10 @@ void FixMPMBoundary::check_field(const MPMField &field) const
         "scheme usf and usavg", "they ask for the rotation of the step before: use usl or musl"},
        {field.options.total != wall.fields[0]->options.total && wall.rotating(), "frame total",
         "the wall also turns fields of frame updated, whose nodes are elsewhere: use a fix "
-        "mpm/boundary with "
-        "keyword field for each"},
+        "mpm/boundary with keyword field for each"},
        {field.options.most_distorted > 0.0 && wall.is_driven(), "reference update",
-        "the material that a wall with velocity holds would leave it with the first "
-        "update: use reference fixed"},
+        "the material that a wall with velocity holds would leave it with the first update: use "
+        "reference fixed"},
        {field.options.stress_before() && wall.decides(), "scheme usf and usavg",
         "separate and friction need the contact before it is known: use usl or musl"}});
 }
@@ -175,15 +170,14 @@ void FixMPMBoundary::check_master(int face) const
                  FACE_NAME[face], id, other->id);
 
     // opposite face
-
     if (!std::count(other->wall.face_list.begin(), other->wall.face_list.end(), face ^ 1)) continue;
     for (const auto &list : nodes) {
       const auto &field = list.field;
       if (other->wall.acts_on(field) &&
           MPMMirrorNodes::are_near({{field, *domain, face}, {field, *domain, face ^ 1}}, face / 2))
         error->all(FLERR, Error::NOLASTLINE,
-                   "Faces {} and {} are less than 3 cells apart, or 5 when they are not in "
-                   "planes of nodes: they must be in the same fix mpm/boundary",
+                   "Faces {} and {} are less than 3 cells apart, or 5 when they are not in planes "
+                   "of nodes: they must be in the same fix mpm/boundary",
                    FACE_NAME[face], FACE_NAME[face ^ 1]);
     }
   }
@@ -209,13 +203,6 @@ void FixMPMBoundary::check_faces() const
     }
   }
 }
-
-void FixMPMBoundary::init_action()
-{
-  reaction.begin_run(*this);
-}
-
-/* ---------------------------------------------------------------------- */
 
 const MPMWallNodes *FixMPMBoundary::nodes_of(const MPMField &field) const
 {
@@ -254,11 +241,6 @@ bool FixMPMBoundary::looks_at_all(const MPMField &field, const Grid::Block &bloc
   return list && list->needs(block);
 }
 
-bool FixMPMBoundary::decides_contact(const MPMField &field) const
-{
-  return wall.kind == MPMWall::SEPARATE && wall.acts_on(field);
-}
-
 void FixMPMBoundary::list_ties(const MPMField &field, std::vector<int64_t> &ties,
                                std::vector<int64_t> &others) const
 {
@@ -283,8 +265,6 @@ void FixMPMBoundary::predict(MPMField &field, const std::vector<char> &near,
   update_motion(wall, nodes, field.step_dt());
   if (const auto *list = nodes_of(field)) list->predict(near, to);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::act(double dt, Stage stage)
 {
@@ -312,8 +292,6 @@ void FixMPMBoundary::act(double dt, Stage stage)
   if (count) wall.state.acted = 1;
   if (count && thin_regions.is_due()) thin_regions.report();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void FixMPMBoundary::write_restart(FILE *fp)
 {

@@ -16,8 +16,8 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #define LMP_FIX_MPM_BOUNDARY_H
 
 #include "field/mpm_friction_heat.h"
-#include "field/mpm_line_ties.h"
 #include "field/mpm_node_action.h"
+#include "field/mpm_trial_contact.h"
 #include "fix.h"
 #include "walls/mpm_contact_search.h"
 #include "walls/mpm_thin_regions.h"
@@ -43,7 +43,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   FixMPMBoundary(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
-  void init_action() override;
+  void init_action() override { reaction.begin_run(*this); }
   void setup(int) override { wall.setup(); }
   void post_run() override { thin_regions.report(); }
   void write_restart(FILE *) override;
@@ -58,7 +58,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   void topology_changed(MPMField &) override;
   bool looks_beyond_points() const override { return false; }
   bool looks_at_all(const MPMField &, const MPM_NS::Grid::Block &) const override;
-  bool decides_contact(const MPMField &) const override;
+  bool decides_contact(const MPMField &field) const override
+  {
+    return wall.kind == MPMWall::SEPARATE && wall.acts_on(field);
+  }
   bool is_projection() const override { return !wall.decides(); }
   void list_ties(const MPMField &, std::vector<int64_t> &, std::vector<int64_t> &) const override;
   MPMTrialContact *trial_contact() override;

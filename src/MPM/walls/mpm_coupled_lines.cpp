@@ -6,23 +6,19 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// On curved surfaces, where the axis that is nearest to the normal changes, lines of nodes along
-// both axes share nodes and prescribe nearly the same. One after the other, they would undo a part
-// of each other's action, and repetition does not converge in implicit steps, whose constraints
-// must be a projection. Such lines act together, with the change of velocities of least kinetic
-// energy that satisfies all of them:
+// Lines of nodes along two axes that share nodes act together, with the change of velocities of
+// least kinetic energy that satisfies all of them (one after the other, they would not be a
+// projection):
 //
 //   v_i += sum_r l_r c_ri n_r/m_i,  sum_s G_rs l_s = -sum_i c_ri n_r (v_i - V_i),
 //   G_rs = sum_i c_ri c_si n_r n_s/m_i
 //
 // where each line has a row c = a and, when all of its nodes have mass, a row c = b
-// (mpm_line_constraint.cpp). Rows that nearly depend on others ask for the same twice: eigenvectors
-// of G, scaled to 1 on its diagonal, with small eigenvalues are left out.
-//
-// Where material sticks, each prescribed component has these equations on its own, with 1 in place
-// of n_r.
+// (mpm_line_constraint.cpp). Eigenvectors of G, scaled to 1 on its diagonal, with small eigenvalues
+// are left out. Where material sticks, each prescribed component has these equations with 1 in
+// place of n_r.
 
-#include "walls/mpm_coupled_lines.h"
+#include "walls/mpm_crossing_lines.h"
 
 #include "field/mpm_field.h"
 #include "math/sets.h"
@@ -92,8 +88,6 @@ std::vector<MPMCoupledLines> MPMCoupledLines::find(std::vector<MPMCrossing> &lin
   }
   return found;
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Start of an act: the masses of nodes. Returns false if there is none. */
 bool MPMCoupledLines::begin(MPMField &field)

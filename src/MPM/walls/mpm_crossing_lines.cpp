@@ -40,15 +40,12 @@ void MPMCrossingLines::clear()
   crossed_known.clear();
 }
 
-/* ----------------------------------------------------------------------
-   Lines of nodes through the surface of a region that separates, along the axis that is nearest to
-   the normal. Nodes inside that are on such a line do not act on their own.
-
-   Next to edges, and where the region is thin, nodes of a line may be nearer to another face, or
-   beyond it. There, whether a line acts depends on where the material is, see is_in_front(). Such
-   lines are found from the nodes outside, which are nearest to the face that they look at.
-------------------------------------------------------------------------- */
-
+/** Lines of nodes through the surface of a region that separates, along the axis that is nearest to
+ *  the normal. Nodes inside that are on such a line do not act on their own.
+ *
+ *  Next to edges, and where the region is thin, nodes of a line may be nearer to another face, or
+ *  beyond it. There, whether a line acts depends on where the material is, see is_in_front(). Such
+ *  lines are found from the nodes outside, which are nearest to the face that they look at. */
 void MPMCrossingLines::list(const std::vector<MPMWallNode> &nodes,
                             const std::vector<MPMWallNode> &outside)
 {
@@ -78,7 +75,6 @@ void MPMCrossingLines::list(const std::vector<MPMWallNode> &nodes,
 
   // lines along one axis share no nodes; lines along two axes do, and so do lines through both
   // faces of a thin plate: the same order on all ranks
-
   std::stable_sort(lines.begin(), lines.end(), [](const MPMCrossing &a, const MPMCrossing &b) {
     if (a.front != b.front || a.axis != b.axis || a.front == MPMCrossing::SOUND)
       return std::tie(a.front, a.axis) < std::tie(b.front, b.axis);
@@ -89,12 +85,9 @@ void MPMCrossingLines::list(const std::vector<MPMWallNode> &nodes,
   if (wall.holds_surface()) coupled = MPMCoupledLines::find(lines, wall.kind == MPMWall::STICK);
 }
 
-/* ----------------------------------------------------------------------
-   Nodes that are on lines do not act on their own. With slip and friction, a surface that moves
-   across the lattice hands nodes over, see MPMWallNodes. Lines cannot do this, and there are
-   none in that case
-------------------------------------------------------------------------- */
-
+/** Nodes that are on lines do not act on their own. With slip and friction, a surface that moves
+ *  across the lattice hands nodes over, see MPMWallNodes. Lines cannot do this, and there are none
+ *  in that case. */
 void MPMCrossingLines::take_nodes(std::vector<MPMWallNode> &nodes)
 {
   const bool hands_over =
@@ -123,11 +116,9 @@ void MPMCrossingLines::take_nodes(std::vector<MPMWallNode> &nodes)
               nodes.end());
 }
 
-/* ----------------------------------------------------------------------
-   Where does the line along an axis through this node cross the surface? x: position of the node;
-   way: from there to the surface. False if the normal is not known, or the surface is not smooth
-------------------------------------------------------------------------- */
-
+/** Where does the line along an axis through this node cross the surface? x: position of the node;
+ *  way: from there to the surface. False if the normal is not known, or the surface is not
+ *  smooth. */
 bool MPMCrossingLines::find_surface(const MPMWallNode &node, MPMCrossing &c, double *x,
                                     double &way) const
 {
@@ -146,7 +137,6 @@ bool MPMCrossingLines::find_surface(const MPMWallNode &node, MPMCrossing &c, dou
 
   // where does the line cross the surface, and is this node the last one before it? On the surface
   // itself, round-off decides on the side, and some regions give no side: look a little outside
-
   const double outside = 1.0e-3 * h;
   way = -node.distance / slope + outside;
   double distance = 0.0;
@@ -175,11 +165,8 @@ bool MPMCrossingLines::find_surface(const MPMWallNode &node, MPMCrossing &c, dou
   return MathExtra::dot3(n, c.normal) > SMOOTH;
 }
 
-/* ----------------------------------------------------------------------
-   The line with this node as the last one inside or, if the node is outside, as the first one
-   outside. False if there is none, or if it has nodes where the surface is not smooth
-------------------------------------------------------------------------- */
-
+/** The line with this node as the last one inside or, if the node is outside, as the first one
+ *  outside. False if there is none, or if it has nodes where the surface is not smooth. */
 bool MPMCrossingLines::find(const MPMWallNode &from_node, MPMCrossing &c)
 {
   double x[3], way;
@@ -230,7 +217,6 @@ bool MPMCrossingLines::find(const MPMWallNode &from_node, MPMCrossing &c)
   c.depth = (surface_at - c.place) * cosine;
 
   // is there another face within reach of the material in front?
-
   if (is_outside) c.front = MPMCrossing::NEAR_OTHERS;
   const double surface_x = x[a] + outward * way;
   double at[3] = {x[0], x[1], x[2]};
@@ -287,11 +273,8 @@ bool MPMCrossingLines::is_narrow(const MPMWallNode &node, const double *x) const
   return narrow;
 }
 
-/* ----------------------------------------------------------------------
-   Is this node outside, in front of the edge of a blade or of a wire? Then c is the line of nodes
-   from it into the region
-------------------------------------------------------------------------- */
-
+/** Is this node outside, in front of the edge of a blade or of a wire? Then c is the line of nodes
+ *  from it into the region. */
 bool MPMCrossingLines::find_blade(const MPMWallNode &node, MPMCrossing &c) const
 {
   const double h = field.lattice.h, *const n = node.normal;
@@ -332,7 +315,6 @@ void MPMCrossingLines::leave_alone()
 
   // on a curved surface, successive projections on lines that share nodes converge slowly if at
   // all: nodes are held one by one there
-
   lines.erase(std::remove_if(lines.begin(), lines.end(),
                              [](const MPMCrossing &c) {
                                return !c.alone && std::fabs(c.normal[c.axis]) < STRAIGHT;
@@ -372,8 +354,6 @@ bool MPMCrossingLines::holds(const MPMCrossing &c) const
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMCrossingLines::act(MPMWallContact &contact, std::size_t first)
 {
   held_nodes.clear();
@@ -388,11 +368,8 @@ void MPMCrossingLines::act(MPMWallContact &contact, std::size_t first)
     });
 }
 
-/* ----------------------------------------------------------------------
-   Normal and tangential part of the impulse at the surface of a region, whose normal may be
-   inclined to the line
-------------------------------------------------------------------------- */
-
+/** Normal and tangential part of the impulse at the surface of a region, whose normal may be
+ *  inclined to the line. */
 void MPMCrossingLines::act_on_line(MPMWallContact &contact, MPMCrossing &line)
 {
   MPMWallReaction &reaction = contact.reaction;
@@ -421,15 +398,10 @@ void MPMCrossingLines::act_on_line(MPMWallContact &contact, MPMCrossing &line)
     const double slide = lambda[d] - normal * n[d];
     needed += slide * slide;
   }
-  const double push = line.touched ? constraint.total * normal : 0.0;
-  const double of_water = line.touched ? contact.water_on(constraint.node, constraint.n, n) : 0.0;
-  const double share =
-      contact.tangential_share(line.state, push, of_water, constraint.total * sqrt(needed));
-  if (line.state == MPMContactState::OPEN) {
-    if (of_water > 0.0) contact.push_by_water(field, constraint.node, constraint.n, n);
+  double share;
+  if (!contact.holds(field, line, constraint.node, constraint.n, n, constraint.total * normal,
+                     constraint.total * sqrt(needed), share))
     return;
-  }
-  if (line.state == MPMContactState::SLIDING) reaction.begin_sliding(n);
   for (int k = 0; k < constraint.n; k++) {
     double v[3], old[3], along = 0.0;
     for (int d = 0; d < dim; d++) along += change[d][k] * n[d];
@@ -471,8 +443,6 @@ void MPMCrossingLines::change_old(const MPMLineConstraint &constraint, const dou
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 int MPMCrossingLines::contact_index(double slope, double place)
 {
   constexpr int PLACES = 32, SLOPES = 32;
@@ -507,8 +477,6 @@ const MPMContactDistance &MPMCrossingLines::contact_at_depth(double depth)
   return by_depth[k];
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMCrossingLines::mark_blocks(std::vector<char> &blocks) const
 {
   for (const auto &line : lines) line.mark_blocks(blocks);
@@ -522,4 +490,61 @@ void MPMCrossingLines::list_ties(std::vector<int64_t> &ties) const
   };
   for (const auto &line : lines) add({line.node, line.node + line.n});
   for (const auto &group : coupled) add(group.nodes);
+}
+
+// Where a region is thin, a node can be nearer to another face than to the one that the material
+// touches. The masses of the nodes on a line show where the material is.
+
+static double mass(Grid &grid, int64_t node)
+{
+  return node < 0 ? 0.0 : grid.record(node)[3];
+}
+
+/** In front of a plane, a node at the distance x from the surface has the mass that its (quadratic)
+ *  function has over x' > -x. If it has more than with a surface that is INTO deeper in the wall,
+ *  then there is material at another face. INTO is enough for functions of other shapes. */
+bool MPMCrossing::is_in_front(Grid &grid) const
+{
+  constexpr double INTO = 0.3, LITTLE = 1.0e-3;    // in node spacings; share of the mass
+  const auto share = [](double x) {
+    const double s = std::fabs(x), y = 1.5 - std::min(s, 1.5);
+    const double less = s < 0.5 ? 0.5 - 0.75 * s + s * s * s / 3.0 : y * y * y / 6.0;
+    return x < 0.0 ? less : 1.0 - less;
+  };
+  double full = 0.0;
+  const double step = std::fabs(normal[axis]);
+  for (int k = inside; k < n; k++)
+    full = std::max(full, mass(grid, node[k]) / share(k * step - depth + INTO));
+  for (int k = 0; k < inside; k++)
+    if (mass(grid, node[k]) > full * (share(k * step - depth + INTO) + LITTLE)) return false;
+  return full > 0.0;
+}
+
+bool MPMCrossing::is_behind(Grid &grid, double share) const
+{
+  double in_front = 0.0, in_region = 0.0;
+  for (int k = 0; k < n; k++) {
+    double &most = k < inside ? in_region : in_front;
+    most = std::max(most, mass(grid, node[k]));
+  }
+  return in_front <= share * in_region;
+}
+
+/** At most the tails of functions across an inclined line bring the node behind the line mass of
+ *  the material in front. */
+bool MPMCrossing::has_material_inside(Grid &grid) const
+{
+  constexpr double MUCH = 0.1;
+  const double there = mass(grid, behind);
+  if (there <= 0.0) return false;
+  double most = 0.0;
+  for (int k = 0; k < n; k++) most = std::max(most, mass(grid, node[k]));
+  return there > MUCH * most;
+}
+
+bool MPMCrossing::goes_through(Grid &grid) const
+{
+  return alone && std::all_of(node, node + n, [&](int64_t node) {
+           return grid.record(node)[3] > 0.0;
+         });
 }

@@ -9,8 +9,8 @@
 #ifndef LMP_MPM_CROSSING_LINES_H
 #define LMP_MPM_CROSSING_LINES_H
 
-#include "walls/mpm_coupled_lines.h"
-#include "walls/mpm_crossing.h"
+#include "field/node_line.h"
+#include "walls/mpm_wall_contact.h"
 #include "walls/mpm_wall_gap.h"
 
 #include <cstdint>
@@ -18,7 +18,87 @@
 
 namespace LAMMPS_NS {
 class MPMField;
+class MPMLineConstraint;
 class MPMWall;
+class MPMWallReaction;
+
+/** A line of nodes from the inside of a region through its surface to the outside. */
+struct MPMCrossing : NodeLine {
+  /** SOUND: always acts; THIN_PLACE (another face is near): acts unless the material is behind;
+   *  NEAR_OTHERS (nodes of the line are nearer to another face, or beyond it): acts only if the
+   *  material is in front. */
+  enum Front { SOUND, THIN_PLACE, NEAR_OTHERS };
+
+  int64_t base;        ///< node of the line from which the line was found
+  int64_t behind;      ///< next node in the region, which only material inside reaches
+  double surface;      ///< position of the surface on the axis
+  double normal[3];    ///< of the surface at the crossing
+  int contact;         ///< index of MPMCrossingLines::contact()
+  int inside;          ///< number of nodes behind the surface, which come first
+  int place;           ///< coordinate of the first node on the line, growing outward
+  double depth;        ///< depth of the first node behind the surface [node spacings]
+  MPMContactState state = MPMContactState::OPEN;
+  bool touched = true;    ///< the surface of the material touches it in this step
+  Front front = SOUND;
+  bool acts = true;
+  bool in_plate = false;    ///< in a plate thinner than what nodes resolve
+  bool alone = false;       ///< grips: shares no node with another line
+  bool coupled = false;     ///< acts together with others, see MPMCoupledLines
+
+  // where is the material, judged by the masses of nodes?
+
+  /** Is it in front of the surface alone? */
+  bool is_in_front(MPM_NS::Grid &) const;
+  /** Is the mass of nodes in front at most this share of that of nodes behind? */
+  bool is_behind(MPM_NS::Grid &, double share) const;
+  /** Is there material in the region, about a spacing below the surface or deeper? */
+  bool has_material_inside(MPM_NS::Grid &) const;
+  /** Is there material on both sides of the surface, and can the line hold it? */
+  bool goes_through(MPM_NS::Grid &) const;
+};
+
+/** Lines of nodes that share nodes and prescribe nearly the same there: they act together. */
+class MPMCoupledLines {
+ public:
+  std::vector<int> lines;        ///< indices of crossings
+  std::vector<int64_t> nodes;    ///< all of their nodes, in order
+
+  /** Finds the groups of lines that share nodes, along different axes and in front of the same
+   *  material. */
+  static std::vector<MPMCoupledLines> find(std::vector<MPMCrossing> &, bool sticks);
+
+  /** Changes the velocities of the nodes. acts(line): does it act in this step? */
+  template <class Acts>
+  void act(MPMWallReaction &reaction, const MPMWall &wall, MPMField &field,
+           std::vector<MPMCrossing> &crossings, const Acts &acts)
+  {
+    if (!begin(field)) return;
+    for (std::size_t k = 0; k < lines.size(); k++)
+      if (acts(crossings[lines[k]])) add_rows(k, reaction, wall, field, crossings[lines[k]]);
+    solve(reaction, wall, field);
+  }
+
+ private:
+  struct Row {    // an equation for the velocities of nodes
+    int n;
+    int node[NodeLine::MOST];    // indices in nodes
+    double c[NodeLine::MOST];    // coefficients
+    double normal[3];
+    // velocity that the row removes: of components that stick, or along the normal (first one)
+    double sum[3], old[3];
+  };
+  std::vector<Row> rows;
+  std::vector<double> mass, active;    // masses of nodes; lines: 1 if it acts
+  double heaviest = 0.0;
+  std::vector<double> inverse;    // [row][row], valid for known_mass and known_active
+  std::vector<double> known_mass, known_active;
+
+  bool begin(MPMField &);
+  void add_rows(std::size_t line, const MPMWallReaction &, const MPMWall &, MPMField &,
+                MPMCrossing &);
+  void find_inverse(bool sticks);
+  void solve(MPMWallReaction &, const MPMWall &, MPMField &);
+};
 
 /** Lines of nodes of a field through the surface of a region, along the axis that is nearest to the
  *  normal. */
@@ -85,5 +165,4 @@ class MPMCrossingLines {
 };
 
 }    // namespace LAMMPS_NS
-
 #endif

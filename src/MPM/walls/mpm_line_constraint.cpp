@@ -6,23 +6,17 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Walls that cut cells: faces of the box between planes of nodes, so that nodes have no mirror
-// images, and surfaces of regions. The velocity at the wall, at the lateral position of a line of
-// nodes along the normal, is sum_i a_i v_i, a_i = N_i(face), and the material at the face has the
+// Where a wall cuts cells, the material at the wall, on a line of nodes along the normal, has the
 // velocity V of the wall when
-//   sum_i a_i (v_i - V_i) = 0
-// for each line. A node that only points right at the face reach could alone do that, with a large
-// velocity that other points do not feel, and the body would creep into the wall. Therefore the
-// three outermost nodes must also have no curvature, b = (1, -2, 1):
-//   sum_i b_i (v_i - V_i) = 0,
-// as the mirror images do at a plane. The change of velocities of least kinetic energy that does
-// both,
+//   sum_i a_i (v_i - V_i) = 0,  a_i = N_i(wall).
+// A node that only points right at the wall reach could do that alone. Therefore the three
+// outermost nodes must also have no curvature, b = (1, -2, 1): sum_i b_i (v_i - V_i) = 0, as with
+// mirror images. The change of velocities of least kinetic energy that does both is
 //   v_i += (lambda a_i + mu b_i)/m_i,
-// leaves alone what varies linearly from V at the face. Its impulse is lambda sum_i a_i. A wall
-// acts when points are in reach of its outermost node, except for nodes that reach less than 0.5
-// (linear), 0.2 or 0.3 of a cell into the box (MIN_WEIGHT). Where no point reaches a linear
-// function's outer node, its velocity is extrapolated from the two next ones. Friction, separation
-// and the old velocities of FLIP are as at mirror planes.
+// whose impulse is lambda sum_i a_i. A wall acts when points are in reach of its outermost node,
+// except for nodes that reach less than 0.5 (linear), 0.2 or 0.3 of a cell into the box
+// (MIN_WEIGHT). Where no point reaches a linear function's outer node, its velocity is extrapolated
+// from the two next ones.
 
 #include "walls/mpm_line_constraint.h"
 
@@ -54,8 +48,6 @@ int MPMLineConstraint::weights_at(const MPMField &field, int axis, int inward, d
   weight[0] = 0.0;
   return 3;
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLine &line, int inward,
                              double least)
@@ -114,21 +106,11 @@ bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLin
   return true;
 }
 
-/* ----------------------------------------------------------------------
-   The change of least kinetic energy that removes velocities r relative to the wall, and the
-   impulse lambda that belongs to A. With inverse masses w, and AB = sum_k w_k A_k B_k,
-
-     lambda = -(BB sum_j A_j r_j - AB sum_j B_j r_j)/det,  det = AA BB - AB^2
-
-   A node at the very end of the functions of points has 1e-30 of the mass of its neighbors. Its
-   terms would drown those of the neighbors in AA, AB, and BB: det would be noise, or zero, and with
-   it the velocities of all nodes. With D_jk = A_j B_k - A_k B_j (Lagrange's identity) only terms of
-   pairs of nodes remain:
-
-     det = sum_{j<k} w_j w_k D_jk^2,  lambda = -sum_i w_i B_i sum_j D_ji r_j/det,
-     change of v_k: w_k sum_i w_i D_ik sum_j D_ji r_j/det
-------------------------------------------------------------------------- */
-
+/** With inverse masses w, and D_jk = A_j B_k - A_k B_j (Lagrange's identity, which does not lose
+ *  light nodes among heavy ones),
+ *
+ *    det = sum_{j<k} w_j w_k D_jk^2,  lambda = -sum_i w_i B_i sum_j D_ji r_j/det,
+ *    change of v_k: w_k sum_i w_i D_ik sum_j D_ji r_j/det */
 void MPMLineConstraint::prepare(bool all)
 {
   straight = all;

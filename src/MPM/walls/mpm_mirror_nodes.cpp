@@ -6,33 +6,6 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   The projection of mirror planes is derived in the README of this room. Its impulse on the body is
-     -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
-   with w1, w2 the velocities relative to the wall that the momentum equation gave to the nodes
-   k0 + j and to their images k0 - j, which for an unconstrained component is minus the mean velocity
-   at the wall times a mass. Stick prescribes all components, slip the normal one. At edges, a node
-   and its images in all faces of the fix that prescribe a component form a group with signs.
-
-   Friction scales the tangential projection of a column of nodes so that its impulse is at most mu
-   times the normal one (return mapping of Coulomb's law). With MUSL, the velocity that is mapped
-   back for the gradient follows the decision of the column.
-
-   FLIP. Points change their velocity by the sum of N (v_new - v_old). Stick, and slip along the
-   normal, hold the material for good: they constrain v_old like v_new, which is to constrain both
-   momentum and force of the nodes (Sulsky, Chen, Schreyer 1994), so that the increment at a wall at
-   rest is zero, as it is when the body is continued by its mirror image. With an unchanged v_old,
-   the prescribed component would be updated as in PIC. But a point that arrives at the wall must
-   lose its velocity. Hence v_old relative to the wall, whose velocity is that in the last step,
-   counts as consistent with the wall, in each component, only up to the value at the first node
-   inside (a field that rises from the wall has less at the wall than there); any excess remains in
-   v_old, and the points lose it. Separating walls, walls that turn, and friction leave v_old alone.
-   So do regions, except those that stick or slip at their surface (MPMCrossingLines).
-
-   AFLIP leaves v_old alone, too: with affine matrices, a vibration loses nothing, and a constraint
-   on v_old would create energy, see DECISIONS.md. PIC and APIC have no use for v_old.
-------------------------------------------------------------------------- */
-
 #include "walls/mpm_mirror_nodes.h"
 
 #include "domain.h"
@@ -47,6 +20,18 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+/* The impulse of the projection of mirror planes (README of this room) on the body is
+ *
+ *    -m(k0) w(k0) - sum_j 2 m1 m2/(m1 + m2) (w1 + w2)
+ *
+ *  with the velocities w relative to the wall of the nodes k0 + j and of their images k0 - j.
+ *  Friction scales the tangential part for a column of nodes (Coulomb's law).
+ *
+ *  FLIP. Where material is held for good, v_old is constrained like v_new (Sulsky, Chen, Schreyer
+ *  1994). But a point that arrives at the wall must lose its velocity: v_old relative to the wall
+ *  counts as consistent with it, in each component, only up to the value at the first node
+ *  inside. */
 
 static constexpr double HEAVY = 0.500001;    // share of one node in the mass of mirror images
 
@@ -71,14 +56,11 @@ bool MPMMirrorNodes::are_near(const std::vector<MPMBoxFace> &faces, int axis)
   return hi->plane - lo->plane < (lo->cut || hi->cut ? 5 : 3);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMMirrorNodes::extend_topology() const
 {
   Grid &grid = field.grid;
 
   // blocks that are added are looked at, too: images of images at edges, and narrow channels
-
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++)
     for (const auto &face : faces) {
       int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
@@ -139,7 +121,6 @@ void MPMMirrorNodes::list(std::vector<MPMWallNode> &deep)
 
   // stick: each component is odd about all faces; slip: the normal component is odd about its own
   // face
-
   if (wall.kind == MPMWall::STICK) {
     const bool prescribed[3] = {wall.velocity[0].given, wall.velocity[1].given,
                                 wall.velocity[2].given};
@@ -152,11 +133,8 @@ void MPMMirrorNodes::list(std::vector<MPMWallNode> &deep)
   }
 }
 
-/* ----------------------------------------------------------------------
-   nodes between the mirrors of this axis, or of all axes (-1), each with all its images in these
-   mirrors
-------------------------------------------------------------------------- */
-
+/** Nodes between the mirrors of this axis, or of all axes (-1), each with all its images in these
+ *  mirrors. */
 void MPMMirrorNodes::list_groups(const bool *prescribed, int axis)
 {
   const Grid &grid = field.grid;
@@ -237,8 +215,6 @@ void MPMMirrorNodes::add_group(const Mirrors &mirror, const int *index, const bo
     images.pop_back();
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMMirrorNodes::mark_blocks(std::vector<char> &blocks) const
 {
   for (const auto &face : faces) {
@@ -249,11 +225,8 @@ void MPMMirrorNodes::mark_blocks(std::vector<char> &blocks) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   Lines through faces that cut cells act twice. At edges, tangential components of one face are
-   normal ones of another: these come last, so that no material gets out
-------------------------------------------------------------------------- */
-
+/** Lines through faces that cut cells act twice. At edges, tangential components of one face are
+ *  normal ones of another: these come last, so that no material gets out. */
 void MPMMirrorNodes::act(MPMWallContact &contact)
 {
   for (const bool last : {false, true}) {
@@ -279,11 +252,8 @@ void MPMMirrorNodes::act(MPMWallContact &contact)
   for (const auto &group : groups) act_on_group(contact.reaction, group);
 }
 
-/* ----------------------------------------------------------------------
-   Do the node and its images have mass, and more than one of them? A single one is free unless it
-   is in the plane of the wall. For most nodes near walls this is false
-------------------------------------------------------------------------- */
-
+/** Do the node and its images have mass, and more than one of them? A single one is free unless it
+ *  is in the plane of the wall. For most nodes near walls this is false. */
 bool MPMMirrorNodes::is_constrained(const Image *image, int n, bool fixed) const
 {
   int massive = 0;
@@ -291,11 +261,8 @@ bool MPMMirrorNodes::is_constrained(const Image *image, int n, bool fixed) const
   return massive > (fixed ? 0 : 1);
 }
 
-/* ----------------------------------------------------------------------
-   sets the prescribed velocities of a node and its images: odd about the wall, and equal to the
-   wall in its plane (fixed)
-------------------------------------------------------------------------- */
-
+/** Sets the prescribed velocities of a node and its images: odd about the wall, and equal to the
+ *  wall in its plane (fixed). */
 void MPMMirrorNodes::project(MPMWallReaction &reaction, const Image *image, int n, bool fixed,
                              const Prescribed &p)
 {
@@ -340,8 +307,6 @@ static void limit_of_old(const double *record, const double *wall, int dim, doub
   for (int d = 0; d < dim; d++) limit[d] = record[3] > 0.0 ? fabs(record[4 + d] - wall[d]) : 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &face,
                                    MPMMirrorColumn &column)
 {
@@ -372,7 +337,6 @@ void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &fa
   if (npairs == 0 && !(r[3] > 0.0)) return;
 
   // impulse that would bring all components to the velocity of the wall
-
   double to_stick[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < dim; d++) {
     to_stick[d] = -r[3] * (r[d] - V[d]);
@@ -381,7 +345,6 @@ void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &fa
   }
 
   // slip: the old normal velocity is constrained, too, which is no impulse
-
   if (wall.kind == MPMWall::SLIP && reaction.old_share() > 0.0) {
     prescribed.hold[a] = true;
     if (column.node[1] >= 0)
@@ -398,23 +361,15 @@ void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &fa
     if (d != a) needed += to_stick[d] * to_stick[d];
   double inward[3] = {0.0, 0.0, 0.0};
   inward[a] = face.inward;
-  const double push = column.touched ? face.inward * to_stick[a] : 0.0;
-  const double of_water =
-      column.touched ? contact.water_on(column.node, MPMMirrorColumn::LENGTH, inward) : 0.0;
-  const double slide = contact.tangential_share(column.state, push, of_water, sqrt(needed));
-  if (column.state == MPMContactState::OPEN) {
-    if (of_water > 0.0) contact.push_by_water(field, column.node, MPMMirrorColumn::LENGTH, inward);
+  double slide;
+  if (!contact.holds(field, column, column.node, MPMMirrorColumn::LENGTH, inward,
+                     face.inward * to_stick[a], sqrt(needed), slide))
     return;
-  }
   for (int d = 0; d < dim; d++) prescribed.share[d] = d == a ? 1.0 : slide;
-  const double normal[3] = {(double) (a == 0), (double) (a == 1), (double) (a == 2)};
-  if (column.state == MPMContactState::SLIDING) reaction.begin_sliding(normal);
   if (r[3] > 0.0) project(reaction, &plane, 1, true, prescribed);
   for (int k = 0; k < npairs; k++) project(reaction, pairs[k].images, 2, false, prescribed);
   reaction.end_sliding();
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMMirrorNodes::act_on_group(MPMWallReaction &reaction, const Group &group)
 {
@@ -435,8 +390,6 @@ void MPMMirrorNodes::act_on_group(MPMWallReaction &reaction, const Group &group)
   project(reaction, first, n, group.fixed, prescribed);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face, MPMFaceLine &line,
                                  bool last)
 {
@@ -453,13 +406,12 @@ void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face
   const auto &V = constraint.V;
   const double total = constraint.total;
 
-  // old velocities are consistent with the wall up to the value at the innermost node, see above
-
   // components that stick prescribes in this pass
   const auto prescribed = [&](int d) {
     return wall.velocity[d].given && (d == a) == last;
   };
-  const double normal[3] = {(double) (a == 0), (double) (a == 1), (double) (a == 2)};
+  double inward[3] = {0.0, 0.0, 0.0};
+  inward[a] = face.inward;
   double lambda[3] = {0.0, 0.0, 0.0}, lambda_old[3] = {0.0, 0.0, 0.0};
   double change[3][4], change_old[3][4] = {};
   double relative[4];    // velocities of the nodes relative to the wall
@@ -478,22 +430,13 @@ void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face
   } else if (last) {
     share[a] = 1.0;
   } else {
-    const double push = line.touched
-        ? face.inward * total * (lambda[a] - reaction.old_share() * lambda_old[a])
-        : 0.0;
-    double needed = 0.0;
+    const double push = face.inward * total * (lambda[a] - reaction.old_share() * lambda_old[a]);
+    double needed = 0.0, slide;
     for (int d = 0; d < dim; d++)
       if (d != a) needed += lambda[d] * lambda[d];
-    double inward[3] = {0.0, 0.0, 0.0};
-    inward[a] = face.inward;
-    const double of_water = line.touched ? contact.water_on(constraint.node, m, inward) : 0.0;
-    const double slide = contact.tangential_share(line.state, push, of_water, total * sqrt(needed));
-    if (line.state == MPMContactState::OPEN) {
-      if (of_water > 0.0) contact.push_by_water(field, constraint.node, m, inward);
+    if (!contact.holds(field, line, constraint.node, m, inward, push, total * sqrt(needed), slide))
       return;
-    }
     for (int d = 0; d < dim; d++) share[d] = d == a ? 1.0 : slide;
-    if (line.state == MPMContactState::SLIDING) reaction.begin_sliding(normal);
   }
 
   for (int k = 0; k < m; k++) {
@@ -507,10 +450,7 @@ void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face
   reaction.end_sliding();
 }
 
-/* ----------------------------------------------------------------------
-   Images with a heavy node go to others, as most of the mass is in that node
-------------------------------------------------------------------------- */
-
+/** Images with a heavy node go to others, as most of the mass is in that node. */
 void MPMMirrorNodes::list_ties(std::vector<int64_t> &ties, std::vector<int64_t> &others) const
 {
   for (const auto &face : faces) {
@@ -606,4 +546,68 @@ void MPMPredictedVelocities::reset(int64_t nnodes)
   held.assign(3 * nnodes, 0.0);
   mirrored.assign(3 * nnodes, 0);
   mirrors.clear();
+}
+
+MPMBoxFace::MPMBoxFace(const MPMField &field, const Domain &box, int face) :
+    axis(face / 2), inward(face % 2 ? -1 : 1)
+{
+  const double x = position(box);
+  const double h = field.lattice.h, origin = field.lattice.origin[axis];
+  plane = (int) std::lround((x - origin) / h);
+  const double plane_x = origin + plane * h;
+  cut = std::fabs(x - plane_x) > MPMWall::ON_SURFACE * h;
+  if (cut) nweight = MPMLineConstraint::weights_at(field, axis, inward, x, first, weight);
+  contact = contact_of(field, x);
+}
+
+double MPMBoxFace::position(const Domain &box) const
+{
+  return inward > 0 ? box.boxlo[axis] : box.boxhi[axis];
+}
+
+std::function<double(const double *)> MPMBoxFace::distance(const Domain &box) const
+{
+  return [a = axis, sign = inward, place = position(box)](const double *x) {
+    return sign * (x[a] - place);
+  };
+}
+
+MPMContactDistance MPMBoxFace::contact_of(const MPMField &field, double x) const
+{
+  if (!cut) {
+    const bool folded = field.options.modified_edges;    // see MPMEdges::fold()
+    const double at[2] = {0.0, -1.0}, weights[2] = {1.0, 2.0};
+    return {field, at, weights, folded ? 2 : 1};
+  }
+  double at[4];
+  const double face = (x - field.lattice.origin[axis]) / field.lattice.h;
+  for (int k = 0; k < nweight; k++) at[k] = inward * (first + k - face);
+  return {field, at, weight, nweight};
+}
+
+void MPMBoxFace::add_line(const MPMField &field, const int *index)
+{
+  const auto at = [&](int along) {
+    int k[3] = {index[0], index[1], index[2]};
+    k[axis] = along;
+    return field.grid.locate(k);
+  };
+  if (cut) {
+    MPMFaceLine line;
+    line.axis = axis;
+    line.n = nweight;
+    std::copy_n(weight, nweight, line.weight);
+    for (int j = 0; j < nweight; j++) line.node[j] = at(first + j);
+    if (line.is_complete()) lines.push_back(line);    // else out of reach of points, as is the face
+    return;
+  }
+  MPMMirrorColumn column;
+  column.node[0] = at(plane);
+  for (int j = 1; j <= MPMMirrorColumn::DEPTH; j++) {
+    int64_t &inside = column.node[j], &image = column.node[MPMMirrorColumn::DEPTH + j];
+    inside = at(plane + inward * j);
+    image = at(plane - inward * j);
+    if (inside < 0 || image < 0) inside = image = -1;    // both out of reach of points
+  }
+  columns.push_back(column);
 }

@@ -14,6 +14,7 @@
 #include "walls/mpm_wall_gap.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -58,6 +59,8 @@ struct MPMBoxFace {
   std::size_t size() const { return cut ? lines.size() : columns.size(); }
   /** Position on its axis. */
   double position(const Domain &) const;
+  /** Distance of a place from the face, positive in the box. */
+  std::function<double(const double *)> distance(const Domain &) const;
   /** Adds the line or column through a node, which is the first one of a line, or in the plane. */
   void add_line(const MPMField &, const int *index);
 

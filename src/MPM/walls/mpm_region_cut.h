@@ -9,8 +9,6 @@
 #ifndef LMP_MPM_REGION_CUT_H
 #define LMP_MPM_REGION_CUT_H
 
-// The part of each cell of a lattice that lies inside a region, for points that get its volume.
-
 #include "lmptype.h"
 #include "pointers.h"
 
@@ -20,11 +18,14 @@
 #include <memory>
 #include <vector>
 
+// The part of each cell of a lattice that lies inside a region, for points that get its volume.
+
 namespace MPM_NS {
 class CellVolumes;
 }
 
 namespace LAMMPS_NS {
+class Region;
 
 /** Cells of sites at origin + (s + 1/2) spacing, and the part of each cell that lies in a region.
  *
@@ -75,6 +76,22 @@ class MPMRegionCut : protected Pointers {
   bool match(const double *x) const;
   bool may_be_light(const bigint *s) const;
   Index receiver(const bigint *s, const Sites &);
+};
+
+/** The inside of a region as a body of density 1. In 2d the volume is an area, and the inertia is
+ *  that about the z axis only. */
+struct MPMRegionBody {
+  double volume = 0.0;
+  double center[3] = {};
+  double inertia[3][3] = {};    ///< about the center
+  double lo[3] = {}, hi[3] = {};
+
+  /** Integrates by samples in the box around the region, with an error of some 1e-4; blocks are
+   *  exact. The region must have such a box, see is_bounded(), and be at rest. */
+  MPMRegionBody(Region &region, int dim);
+
+  /** Is there a box around the region with finite edges, as the constructor needs it? */
+  static bool is_bounded(const Region &region, int dim);
 };
 
 }    // namespace LAMMPS_NS

@@ -6,26 +6,19 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Region::surface() answers for one side of the surface, and tells places on it. There is more that
-   LAMMPS does not tell:
-
-   Unions, asked from outside (RegUnion::surface_exterior()): a place on a part is kept when it is
-   inside of all others, as is right for intersections, and not when it is outside of them, so that
-   LAMMPS finds none. Hence the parts are asked here. Outside of all parts of a union, the distance
-   is the least of theirs. Inside of all parts of an intersection, it is the least of theirs, too.
-   Inside of a union, and outside of an intersection, a part counts whose own side this is, with
-   those of its places that are not hidden by others.
-
-   Cones: on the axis the side is not seen, or zero is divided by zero, so that a place next to the
-   axis is taken. From outside, an end with a radius of zero gives not-a-number (a point is
-   projected on a line without length), which hides the other places: this end is declared open, as
-   its only point belongs to the side.
-------------------------------------------------------------------------- */
+/* Region::surface() of LAMMPS answers for one side of the surface, and not for all regions:
+ *
+ *  From outside of unions it finds nothing, so that their parts are asked here. Outside of all
+ *  parts of a union, and inside of all parts of an intersection, the distance is the least of
+ *  theirs. Inside of a union, and outside of an intersection, a part counts whose own side this is,
+ *  with those of its places that are not hidden by others.
+ *
+ *  On the axis of cones zero is divided by zero: a place next to it is taken. From outside, an end
+ *  with a radius of zero gives not-a-number: it is declared open, as its point belongs to the
+ *  side. */
 
 #include "walls/mpm_region_surface.h"
 
-#include "domain.h"
 #include "math_extra.h"
 #include "region.h"
 #include "walls/region_mpm_mesh.h"
@@ -59,11 +52,8 @@ bool MPMRegionSurface::match(const double *x) const
   return region->match(x[0], x[1], x[2]);
 }
 
-/* ----------------------------------------------------------------------
-   An end is sharp when LAMMPS does not find it alone. When radii are variables, there can be one
-   later: then both ends are left out, one after the other, which finds all that there is
-------------------------------------------------------------------------- */
-
+/** An end is sharp when LAMMPS does not find it alone. When radii are variables, there can be one
+ *  later: then both ends are left out, one after the other, which finds all that there is. */
 void MPMRegionSurface::find_sharp_end()
 {
   constexpr int SIDE = 2;
@@ -88,10 +78,7 @@ void MPMRegionSurface::find_sharp_end()
   if (blunt == 2) left_out = {-1};
 }
 
-/* ----------------------------------------------------------------------
-   what LAMMPS tells of a simple region: calls f(distance, vector from the surface to x)
-------------------------------------------------------------------------- */
-
+/** What LAMMPS tells of a simple region: calls f(distance, vector from the surface to x). */
 template <class F>
 void MPMRegionSurface::each_contact(const double *x, double far, bool inside, const F &f) const
 {
@@ -120,8 +107,6 @@ void MPMRegionSurface::each_contact(const double *x, double far, bool inside, co
   region->interior = interior;
 }
 
-/* ---------------------------------------------------------------------- */
-
 double MPMRegionSurface::find(const double *x, double far, double h) const
 {
   double d, up;
@@ -146,10 +131,7 @@ double MPMRegionSurface::find(const double *x, double far, double h) const
   return inside ? -d : d;
 }
 
-/* ----------------------------------------------------------------------
-   places on the surface that are nearest to x, each on its own smooth part of it
-------------------------------------------------------------------------- */
-
+/** Places on the surface that are nearest to x, each on its own smooth part of it. */
 void MPMRegionSurface::find_places(const double *x, double far) const
 {
   places.clear();
@@ -175,12 +157,9 @@ void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
   }
 }
 
-/* ----------------------------------------------------------------------
-   The direction to the nearest place on the surface is the gradient, unless x is on the surface, or
-   about as far from another place, as at an edge inside. At centers and axes LAMMPS tells one place
-   of many: further in there the distance does not grow
-------------------------------------------------------------------------- */
-
+/** The direction to the nearest place on the surface is the gradient, unless x is on the surface,
+ *  or about as far from another place, as at an edge inside. At centers and axes LAMMPS tells one
+ *  place of many: further in there the distance does not grow. */
 bool MPMRegionSurface::find_normal_at_once(const double *x, double far, double step,
                                            double *normal) const
 {
@@ -204,8 +183,6 @@ bool MPMRegionSurface::find_normal_at_once(const double *x, double far, double s
   for (int d = 0; d < 3; d++) further[d] = x[d] - (inside ? 1.0 : -1.0) * step * normal[d];
   return fabs(distance(further, far)) - nearest > 0.99 * step;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMRegionSurface::normal(const double *x, double far, double step, double *normal) const
 {

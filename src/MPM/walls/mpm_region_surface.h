@@ -9,11 +9,14 @@
 #ifndef LMP_MPM_REGION_SURFACE_H
 #define LMP_MPM_REGION_SURFACE_H
 
+#include "region.h"
+
+#include <array>
 #include <vector>
 
 namespace LAMMPS_NS {
-class Region;
 class RegMPMMesh;
+class Region;
 
 /** The surface of a region in its present state: signed distances and normals. */
 class MPMRegionSurface {
@@ -62,6 +65,16 @@ class MPMRegionSurface {
   void find_places(const double *x, double far) const;
   void find_places_of_parts(const double *x, double far) const;
   template <class F> void each_contact(const double *x, double far, bool inside, const F &f) const;
+};
+
+/** Present position of a region that moves. It gives access to protected members of Region. */
+struct MPMRegionMotion : public Region {
+  /** Center and unit axis of the rotation of a region. */
+  static const double *point_of(const Region *r) { return r->*(&MPMRegionMotion::point); }
+  static const double *axis_of(const Region *r) { return r->*(&MPMRegionMotion::runit); }
+
+  /** Pointers to the shift and the angle of a region, as restart files keep them. */
+  static std::array<double *, 4> of(Region *r) { return {&r->dx, &r->dy, &r->dz, &r->theta}; }
 };
 
 }    // namespace LAMMPS_NS

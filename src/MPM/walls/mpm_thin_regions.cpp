@@ -27,10 +27,7 @@ bool MPMThinRegions::is_due() const
   return wall.steps % LOOK_EVERY == 1;
 }
 
-/* ----------------------------------------------------------------------
-   Each rank notes the first such place, in a step with several the first one in space
-------------------------------------------------------------------------- */
-
+/** Each rank notes the first such place, in a step with several the first one in space. */
 void MPMThinRegions::check(const MPMWallNodes &list, int index)
 {
   constexpr double BOTH =
@@ -59,15 +56,15 @@ void MPMThinRegions::check(const MPMWallNodes &list, int index)
 void MPMThinRegions::report()
 {
   std::array<double, 5> place;
-  if (!wall.region || !first.tell(world, place)) return;
+  if (!wall.region || !first.report(world, place)) return;
   wall.looks_for_thin_places = false;
   if (comm->me == 0)
     error->warning(
         FLERR,
         "Fix mpm/boundary {}: its region {} is thinner than 1.5 node spacings of fix mpm {} near "
-        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {:.0f}): "
-        "its force can be wrong by tens of percent or zero, and material can pass through it. "
-        "Make it thicker there, or the spacing smaller; this is said only once",
+        "{:.6g} {:.6g} {:.6g}, where material is at its edge or on both sides (step {:.0f}): its "
+        "force can be wrong by tens of percent or zero, and material can pass through it. Make it "
+        "thicker there, or the spacing smaller; this is said only once",
         wall.id, wall.region_id, wall.fields[(std::size_t) place[1]]->id(), place[2], place[3],
         place[4], place[0]);
 }

@@ -12,8 +12,6 @@
 #include "base/mpm_first_note.h"
 #include "pointers.h"
 
-#include <vector>
-
 namespace LAMMPS_NS {
 class MPMWall;
 class MPMWallNodes;

@@ -17,7 +17,7 @@
 #include "modify.h"
 #include "region.h"
 #include "update.h"
-#include "walls/mpm_region_motion.h"
+#include "walls/mpm_region_surface.h"
 #include "walls/mpm_wall_gap.h"
 
 #include <algorithm>
@@ -50,16 +50,13 @@ void MPMWall::init_region()
                "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
   if (region->dynamic_check() && region->nregion > 1)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/boundary cannot use region {}: a union or intersection must not move; "
-               "use one fix mpm/boundary for each member",
+               "Fix mpm/boundary cannot use region {}: a union or intersection must not move; use "
+               "one fix mpm/boundary for each member",
                region_id);
 }
 
-/* ----------------------------------------------------------------------
-   A run may start between two steps of the cycle (keyword every of fix mpm); then the state of a
-   region is that at the last step of the cycle
-------------------------------------------------------------------------- */
-
+/** A run may start between two steps of the cycle (keyword every of fix mpm); then the state of a
+ *  region is that at the last step of the cycle. */
 void MPMWall::setup()
 {
   if (!region_moves()) return;
@@ -71,8 +68,6 @@ void MPMWall::setup()
     for (int k = 0; k < 4; k++) state.region[k] = *MPMRegionMotion::of(region)[k];
   placed = true;
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMWall::acts_on(const MPMField &field) const
 {
@@ -89,13 +84,10 @@ bool MPMWall::region_moves() const
   return region && region->dynamic_check();
 }
 
-/* ----------------------------------------------------------------------
-   Nodes inside hold only the points of a body in front of the surface that they reach. The body
-   would creep into the wall, and stresses next to it would be wrong by an amount that depends on
-   where the surface is in a cell. Lines hold the surface. Nodes hold material inside a region, as
-   in a grip, which has no surface there: see MPMCrossingLines.
-------------------------------------------------------------------------- */
-
+/** Nodes inside hold only the points of a body in front of the surface that they reach. The body
+ *  would creep into the wall, and stresses next to it would be wrong by an amount that depends on
+ *  where the surface is in a cell. Lines hold the surface. Nodes hold material inside a region, as
+ *  in a grip, which has no surface there: see MPMCrossingLines. */
 bool MPMWall::acts_across() const
 {
   if (region->varshape) return false;
@@ -111,11 +103,6 @@ bool MPMWall::holds_surface() const
   return (kind == STICK ? sticks : kind == SLIP && friction == 0.0) && !moves_and_holds;
 }
 
-bool MPMWall::keeps_distance() const
-{
-  return region ? holds_surface() : !decides();
-}
-
 bool MPMWall::prescribes(const double *normal, int d) const
 {
   return kind == STICK ? velocity[d].given : std::fabs(normal[d]) == 1.0;
@@ -126,8 +113,6 @@ bool MPMWall::holds_axis(const MPMField &field) const
   return acts_on(field) && std::count(face_list.begin(), face_list.end(), 0) && !decides() &&
       !rotating() && velocity[0].given && velocity[0].variable.empty() && velocity[0].value == 0.0;
 }
-
-/* ---------------------------------------------------------------------- */
 
 bool MPMWall::begin_motion()
 {
@@ -171,12 +156,9 @@ void MPMWall::find_motion(double dt)
   (!motion.uniform && !total ? motion.at_end_of_step(dt) : motion).end(state);
 }
 
-/* ----------------------------------------------------------------------
-   A region acts on nodes that are inside at the start of a step: one that crosses more than a
-   cell in a step can pass through a body without touching it. Not all regions give their
-   extent, so this checks displacements alone, not rotations.
-------------------------------------------------------------------------- */
-
+/** A region acts on nodes that are inside at the start of a step: one that crosses more than a cell
+ *  in a step can pass through a body without touching it. Not all regions give their extent, so
+ *  this checks displacements alone, not rotations. */
 void MPMWall::check_speed(double dt)
 {
   const double along[3] = {motion.shift[0], motion.shift[1],
@@ -200,17 +182,11 @@ void MPMWall::check_speed(double dt)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWall::restore_region()
 {
   for (int k = 0; k < 4; k++) *MPMRegionMotion::of(region)[k] = state.region[k];
 }
 
-static constexpr double FAR = 1.0e8;    // node spacings
-static constexpr double WIDER = 2.0;    // node spacings, around a region that moves
-
-/** Is the place of the region known, so that blocks far from it can be left out? */
 bool MPMWall::knows_place() const
 {
   return region->nregion == 1 && (placed || !region_moves());
@@ -252,4 +228,188 @@ std::function<double(const double *)> MPMWall::distance_from_region(const MPMFie
     for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
     return surface->gap(y, far, h);
   };
+}
+
+/* The velocity given to a node at x by a rotation is the chord ((R(dt) - I)(x - o))/dt: as
+ *  positions are updated by x += dt v, the tangent would carry points outward. USF asks how the
+ *  material has moved to its present position: by the chord of the step that has ended, (I -
+ *  R^-1)(x - o)/dt. */
+
+void MPMWallMotion::begin(const MPMWallState &state)
+{
+  *this = {};
+  uniform = true;
+  MathExtra::copy3(state.shift, before);
+  std::copy_n(state.gradient[0], 9, gradient_before[0]);
+  MathExtra::copy3(state.origin, origin_before);
+}
+
+/** Gradient = (R - I)/dt for a rotation about a unit axis through o. */
+void MPMWallMotion::rotate(double angle, const double *u, const double *o, double dt)
+{
+  uniform = false;
+  MathExtra::copy3(o, origin);
+  const double s = sin(angle) / dt, half = sin(0.5 * angle);
+  const double c = 2.0 * half * half / dt;    // (1 - cos)/dt
+  const double K[3][3] = {{0.0, -u[2], u[1]}, {u[2], 0.0, -u[0]}, {-u[1], u[0], 0.0}};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      gradient[i][j] = s * K[i][j] + c * (u[i] * u[j] - (i == j ? 1.0 : 0.0));
+}
+
+/** Nodes have moved from X to x = X + T X + m, so s + G (x - o) becomes s + G (m - o) + (G + G T)
+ *  X. */
+void MPMWallMotion::refer_to_start(MPMWallState &state, double dt)
+{
+  std::copy_n(state.turned[0], 9, turned[0]);
+  MathExtra::copy3(state.moved, moved);
+  if (!uniform) {
+    double product[3][3];
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        shift[i] += gradient[i][j] * (moved[j] - origin[j]);
+        product[i][j] = gradient[i][j];
+        for (int k = 0; k < 3; k++) product[i][j] += gradient[i][k] * turned[k][j];
+      }
+    std::copy_n(product[0], 9, gradient[0]);
+    std::fill_n(origin, 3, 0.0);
+  }
+  for (int i = 0; i < 3; i++) {
+    state.moved[i] += dt * shift[i];
+    for (int j = 0; j < 3; j++) state.turned[i][j] += dt * gradient[i][j];
+  }
+}
+
+/** Velocity during the step of the material that is at x at its end. It came from y, x = y + dt (s
+ *  + G (y - o)): with R = 1 + dt G, s + G R^T (x - o - dt s), G R^T = -G^T. */
+MPMWallMotion MPMWallMotion::at_end_of_step(double dt) const
+{
+  MPMWallMotion end = *this;
+  for (int i = 0; i < 3; i++) {
+    end.origin[i] += dt * shift[i];
+    for (int j = 0; j < 3; j++) end.gradient[i][j] = -gradient[j][i];
+  }
+  return end;
+}
+
+void MPMWallMotion::end(MPMWallState &state) const
+{
+  MathExtra::copy3(shift, state.shift);
+  std::copy_n(gradient[0], 9, state.gradient[0]);
+  MathExtra::copy3(origin, state.origin);
+}
+
+void MPMWallMotion::velocity(const double *x, double *v) const
+{
+  MathExtra::copy3(shift, v);
+  if (uniform) return;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) v[i] += gradient[i][j] * (x[j] - origin[j]);
+}
+
+void MPMWallMotion::velocity(const Grid &grid, int64_t node, double *v) const
+{
+  double x[3];
+  if (!uniform) grid.node_position(node, x);
+  velocity(x, v);
+}
+
+/** An impulse R dt of the wall that takes its node from the velocity u to v adds R dt (u + v)/2 to
+ *  the kinetic and stored energy. R dt v would differ from it by R (v - u) dt/2 in each step, which
+ *  adds up where a mass is shaken. */
+void MPMWallMotion::half_change(const Grid &grid, int64_t node, double *v) const
+{
+  double x[3];
+  for (int d = 0; d < 3; d++) v[d] = 0.5 * (shift[d] - before[d]);
+  if (uniform) return;
+  grid.node_position(node, x);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      v[i] += 0.5 *
+          (gradient[i][j] * (x[j] - origin[j]) - gradient_before[i][j] * (x[j] - origin_before[j]));
+}
+
+/** The part of old velocities relative to the wall that counts as consistent with it, see
+ *  mpm_mirror_nodes.cpp. */
+double MPMWallMotion::old_relative(const double *record, int d, double limit) const
+{
+  return std::max(-limit, std::min(record[4 + d] - before[d], limit));
+}
+
+void MPMWallMotion::position(const double *X, double *x) const
+{
+  for (int i = 0; i < 3; i++) x[i] = X[i] + moved[i] + MathExtra::dot3(turned[i], X);
+}
+
+/** Fix ID all mpm/boundary faces|region REG  stick|slip|separate  keyword values */
+Options MPMBoundaryOptions::declare(int dim)
+{
+  using namespace option;
+  Options o("fix mpm/boundary");
+  o.argument(word(kind, {{"stick", STICK}, {"slip", SLIP}, {"separate", SEPARATE}}, "kind"));
+  o.add("friction",
+        {number(friction, "mu", NOT_NEGATIVE, "1",
+                "coefficient of Coulomb friction, for *slip* and *separate*")});
+  heat.declare(o, "the energy lost by friction becomes heat of the material",
+               "share of this energy that becomes heat of the material");
+  o.add("velocity",
+        {variables(velocity, 3, "vx vy vz", "velocity",
+                   "velocity of the wall, can be variables (see below); with *stick*, NULL leaves "
+                   "a component free",
+                   true)})
+      .once();
+  o.add("displacement",
+        {variables(velocity, 3, "ux uy uz", "distance",
+                   "displacement of the wall since this fix was defined, instead of its velocity; "
+                   "can be variables; with *stick*, NULL leaves a component free",
+                   true)})
+      .then([this] {
+        by_displacement = true;
+      })
+      .once()
+      .standard("none");
+  o.add("rotate",
+        {numbers(center, 3, "ox oy oz", ANY_NUMBER, "distance", "a point on the axis of rotation"),
+         numbers(axis, 3, "ax ay az", ANY_NUMBER, "", "direction of the axis"),
+         variables(&rate, 1, "rate", "radians/time",
+                   "angular velocity, can be a variable (see below)")})
+      .once()
+      .standard("none");
+  o.add("field",
+        {text(field_id, "fix-ID", "ID of the :doc:`fix mpm <fix_mpm>` on which this fix acts")})
+      .standard("all");
+  o.refuse([=] {
+    return OptionRules{
+        {kind == STICK, "friction", "needs kind slip or separate"},
+        {heat.heats() && friction == 0.0, "heat", "is that of friction, which needs a coefficient"},
+        {kind != STICK && !all_given(), "velocity", "allows NULL only with kind stick"},
+        {!velocity[0].given && !velocity[1].given && (dim == 2 || !velocity[2].given), "velocity",
+         "leaves all components free"},
+        {dim == 2 && (!velocity[2].variable.empty() || velocity[2].value != 0.0), "velocity",
+         "must have the component 0 along z in 2d: {velocity}"},
+        {kind != STICK && !all_given(), "displacement", "allows NULL only with kind stick"},
+        {!velocity[0].given && !velocity[1].given && (dim == 2 || !velocity[2].given),
+         "displacement", "leaves all components free"},
+        {dim == 2 && (!velocity[2].variable.empty() || velocity[2].value != 0.0), "displacement",
+         "must have the component 0 along z in 2d: {displacement}"},
+        {MathExtra::len3(axis) == 0.0, "rotate", "needs an axis of non-zero length"},
+        {dim == 2 && (axis[0] != 0.0 || axis[1] != 0.0), "rotate", "needs an axis along z in 2d"},
+        {!all_given(), "rotate", "prescribes all components of the velocity"}};
+  });
+  return o;
+}
+
+bool MPMBoundaryOptions::is_driven() const
+{
+  return rotating() || std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
+           return v.value != 0.0 || !v.variable.empty();
+         });
+}
+
+bool MPMBoundaryOptions::has_variables() const
+{
+  return !rate.variable.empty() ||
+      std::any_of(velocity, velocity + 3, [](const NumberOrVariable &v) {
+        return !v.variable.empty();
+      });
 }

@@ -9,11 +9,13 @@
 #ifndef LMP_MPM_WALL_H
 #define LMP_MPM_WALL_H
 
+#include "declare/option.h"
+#include "field/mpm_friction_heat.h"
+#include "lattice/grid.h"
 #include "pointers.h"
-#include "walls/mpm_boundary_options.h"
 #include "walls/mpm_region_surface.h"
-#include "walls/mpm_wall_motion.h"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -22,6 +24,74 @@
 namespace LAMMPS_NS {
 class MPMField;
 class Region;
+
+/** Keywords of fix mpm/boundary. */
+struct MPMBoundaryOptions {
+  enum Kind { STICK, SLIP, SEPARATE };
+
+  Kind kind = STICK;
+  double friction = 0.0;
+  MPM_NS::NumberOrVariable velocity[3], rate;    ///< components that are not given are free
+  bool by_displacement = false;                  ///< velocity[] holds displacements
+  double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
+  std::string field_id;                                             ///< empty: all fields
+  MPMFrictionHeatOptions heat;
+
+  bool all_given() const { return velocity[0].given && velocity[1].given && velocity[2].given; }
+  /** Does the impulse decide whether there is contact, or whether it slides? */
+  bool decides() const { return kind == SEPARATE || friction > 0.0; }
+  bool rotating() const { return axis[0] != 0.0 || axis[1] != 0.0 || axis[2] != 0.0; }
+  /** Is the wall given a velocity? If it is a region, material at its surface may leave the
+   *  region. */
+  bool is_driven() const;
+  /** Is one of the quantities that give the motion a variable? */
+  bool has_variables() const;
+  MPM_NS::Options declare(int dimension);
+};
+
+/** State of a wall after the last step, as kept in restart files, without padding. */
+struct MPMWallState {
+  double work;    ///< on the body, this rank's share; in files as energy, of all ranks
+  double shift[3], gradient[3][3], origin[3];    ///< velocity at the end of the last step
+  double region[4];                 ///< shift and angle of the region at the end of the last step
+  double displaced[3];              ///< displacement at that time
+  double turned[3][3], moved[3];    ///< as in MPMWallMotion, at that time
+  int64_t acted;                    ///< was there a last step?
+};
+
+/** Motion of a wall in a step: its velocity at x is shift + gradient (x - origin). */
+class MPMWallMotion {
+ public:
+  double shift[3], gradient[3][3], origin[3];
+  double before[3];    ///< shift in the last step
+  bool uniform;        ///< no gradient
+  bool changes;        ///< may the velocity differ from that in the last step?
+
+  /** Start of a step that follows this state: the wall is at rest. */
+  void begin(const MPMWallState &);
+  /** Turns by an angle about a unit axis through a center in the time dt. */
+  void rotate(double angle, const double *axis, const double *center, double dt);
+  /** For the total frame, whose nodes keep the positions X of the start: from now on, the velocity
+   *  is a function of X. The state is that before this step, and becomes that after it. */
+  void refer_to_start(MPMWallState &, double dt);
+  /** The same motion as a function of the positions at the end of the step. */
+  MPMWallMotion at_end_of_step(double dt) const;
+  /** Notes the velocity at the end of the step. */
+  void end(MPMWallState &) const;
+
+  void velocity(const double *x, double *v) const;
+  void velocity(const MPM_NS::Grid &, int64_t node, double *v) const;
+  /** Half of the change of the velocity since the last step, for the work on a node. */
+  void half_change(const MPM_NS::Grid &, int64_t node, double *v) const;
+  /** Component d of the old velocity in a node record relative to the wall, but at most limit. */
+  double old_relative(const double *record, int d, double limit) const;
+  /** Present position of the material at X, where nodes of the total frame are. */
+  void position(const double *X, double *x) const;
+
+ private:
+  double gradient_before[3][3], origin_before[3];    // at its end, see at_end_of_step()
+  double turned[3][3], moved[3];    // nodes of the total frame at X are at X + turned X + moved
+};
 
 /** A wall, which is one or more faces of the box, or a region: what it does, and how it moves. */
 class MPMWall : protected Pointers, public MPMBoundaryOptions {
@@ -50,7 +120,8 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
   bool looks_ahead = false;        ///< looks for material that comes to the wall in implicit steps
   bool moves_and_holds = false;    ///< a moving region holds material by lines in implicit steps
   bool looks_for_thin_places = true;    ///< no such place has been reported yet
-  bool is_grip = false;    ///< the material inside moves with the region, see mpm_wall_grip.cpp
+  bool is_grip =
+      false;    ///< the material inside moves with the region, see MPMWallTrial::find_carried()
 
   MPMWall(class LAMMPS *lmp, const std::string &id) : Pointers(lmp), id(id) {}
 
@@ -71,7 +142,7 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
   /** Do lines hold material in front of the surface? */
   bool holds_surface() const;
   /** Does the wall hold material that is near, whether or not that has reached it? */
-  bool keeps_distance() const;
+  bool keeps_distance() const { return region ? holds_surface() : !decides(); }
   /** Is the action of the wall known before a step? It is not where it depends on the impulses that
    *  the wall gets, or where the region moves and takes other nodes. */
   bool is_predictable() const { return !decides() && !region_moves(); }
@@ -110,5 +181,4 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
 };
 
 }    // namespace LAMMPS_NS
-
 #endif

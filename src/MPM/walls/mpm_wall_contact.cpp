@@ -6,11 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   Water in pores presses on walls, too, and bears a part of the impulse of the wall. Only the rest
-   acts between grains and wall: friction is proportional to it, and where it would be negative,
-   grains leave a separating wall, pushed by the water. Water does not pull at a separating wall.
-------------------------------------------------------------------------- */
+/* Water in pores presses on walls, too, and bears a part of the impulse of the wall. Only the rest
+ *  acts between grains and wall: friction is proportional to it, and where it would be negative,
+ *  grains leave a separating wall, pushed by the water. Water does not pull at a separating
+ *  wall. */
 
 #include "walls/mpm_wall_contact.h"
 
@@ -25,7 +24,20 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-double MPMWallContact::tangential_share(MPMContactState &state, double normal, double of_water,
+bool MPMWallContact::holds(MPMField &field, MPMContactState &state, bool touched,
+                           const int64_t *node, int n, const double *normal, double push,
+                           double tangential, double &share, double mass)
+{
+  const double by_water = touched ? water_on(node, n, normal) / mass : 0.0;
+  share = tangential_share(state, touched ? push : 0.0, by_water, tangential);
+  if (state == MPMContactState::OPEN && by_water > 0.0) push_by_water(field, node, n, normal);
+  if (state == MPMContactState::SLIDING) reaction.begin_sliding(normal);
+  return state != MPMContactState::OPEN;
+}
+
+/** The share of a tangential impulse that friction gives, where the wall has this impulse along its
+ *  normal, of which water bears a part. */
+double MPMWallContact::tangential_share(MPMContactState &state, double normal, double by_water,
                                         double tangential) const
 {
   if (wall.kind == MPMWall::STICK) {
@@ -40,8 +52,8 @@ double MPMWallContact::tangential_share(MPMContactState &state, double normal, d
   }
   if (!decided) {
     state = MPMContactState::SLIDING;
-    const double grains = normal - of_water;
-    if (wall.kind == MPMWall::SEPARATE && normal <= std::max(of_water, 0.0)) {
+    const double grains = normal - by_water;
+    if (wall.kind == MPMWall::SEPARATE && normal <= std::max(by_water, 0.0)) {
       state = MPMContactState::OPEN;
     } else if (wall.friction > 0.0 && grains > 0.0) {
       const CoulombFriction law = {wall.friction, wall.friction};
@@ -52,8 +64,6 @@ double MPMWallContact::tangential_share(MPMContactState &state, double normal, d
   return state == MPMContactState::STUCK ? 1.0 : 0.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallContact::find_water(MPMField &field, const std::vector<char> &near, double dt)
 {
   water.clear();
@@ -61,6 +71,7 @@ void MPMWallContact::find_water(MPMField &field, const std::vector<char> &near, 
     for (double &w : water) w *= dt;
 }
 
+/** Impulse of the water on the wall at n nodes, -1: none. */
 double MPMWallContact::water_on(const int64_t *node, int n, const double *normal) const
 {
   double sum = 0.0;
@@ -70,10 +81,8 @@ double MPMWallContact::water_on(const int64_t *node, int n, const double *normal
   return sum;
 }
 
-/* ----------------------------------------------------------------------
-   the water does work on the body that it lifts, as does a wall that moves with it
-------------------------------------------------------------------------- */
-
+/** The impulse of the water, which does work on the body that it lifts, at nodes that the wall has
+ *  let go. */
 void MPMWallContact::push_by_water(MPMField &field, const int64_t *nodes, int n,
                                    const double *normal)
 {

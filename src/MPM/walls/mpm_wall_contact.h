@@ -66,23 +66,30 @@ class MPMWallContact {
   /** From now on, the wall acts on the line or node with this number. */
   void use_constraint(std::size_t k) { constraint = constraints ? &(*constraints)[k] : nullptr; }
 
-  /** Decides from the reaction of the wall at nodes. normal: impulse along the normal, of_water:
-   *  the part that water bears, tangential: the impulse along the wall for the material to stick.
-   *  Returns the share of the last one that friction gives, and the state. */
-  double tangential_share(MPMContactState &, double normal, double of_water,
-                          double tangential) const;
+  /** Decides what a wall does to n nodes of a line, with the normal from the wall to the body. push:
+   *  impulse along the normal, tangential: impulse along the wall for the material to stick, both
+   *  over mass. Sets the share of the latter that friction gives. Returns false where the wall lets
+   *  go, and only pore water pushes; end with MPMWallReaction::end_sliding() otherwise. */
+  template <class Line>
+  bool holds(MPMField &field, Line &line, const int64_t *node, int n, const double *normal,
+             double push, double tangential, double &share, double mass = 1.0)
+  {
+    return holds(field, line.state, line.touched, node, n, normal, push, tangential, share, mass);
+  }
   /** Finds the impulses of pore water on the surface of the body at the nodes of the marked blocks,
    *  in the time dt. */
   void find_water(MPMField &, const std::vector<char> &near, double dt);
   /** There is no water. */
   void clear_water() { water.clear(); }
-  /** Impulse of the water on the wall at n nodes, -1: none; normal: from the wall to the body. */
-  double water_on(const int64_t *node, int n, const double *normal) const;
-  /** Applies the impulse of the water to the body at nodes that the wall has let go. */
-  void push_by_water(MPMField &, const int64_t *node, int n, const double *normal);
 
  private:
   std::vector<double> water;    // [node][3] impulse on the surface of the body; empty: none
+
+  bool holds(MPMField &, MPMContactState &, bool touched, const int64_t *node, int n,
+             const double *normal, double push, double tangential, double &share, double mass);
+  double tangential_share(MPMContactState &, double normal, double water, double tangential) const;
+  double water_on(const int64_t *node, int n, const double *normal) const;
+  void push_by_water(MPMField &, const int64_t *node, int n, const double *normal);
 };
 
 }    // namespace LAMMPS_NS

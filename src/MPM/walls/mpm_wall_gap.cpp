@@ -6,26 +6,20 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* ----------------------------------------------------------------------
-   The mean distance of the points that a node at the wall sees, with the weights of its function,
-   is known for material that fills the space in front of a plane wall:
-
-     d_0 = int_0^inf x M(x) dx / int_0^inf M(x) dx     (0.406 h, quadratic, node in the wall)
-
-   and greater when there is a gap, by about 0.6 of its width. Unlike the volume that fills the cell
-   of a node, it is the same at the end of a block as in its middle, and it gets small for a single
-   grain that arrives at the wall, too. Points at the centers of cells of size s stand for the
-   integrals as the midpoint rule does, whose error at the wall is (Euler and Maclaurin)
-
-     sum_p s f(x_p) - int_0^inf f dx = s^2/24 f'(0) + O(s^4)
-
-   which is .016 h for two points per cell, and .06 h for one, and taken into account. Points with a
-   size (GIMP, CPDI) integrate M exactly, but x is that of their center: - s^2/12 M' in place of it.
-
-   The mean alone would let points of a surface that is curved, or a few grains in front of many,
-   cross the wall. Those that are about to cross it count as deep inside of it: what they belong to
-   touches.
-------------------------------------------------------------------------- */
+/* The mean distance of the points that a node at the wall sees, for material in front of a plane
+ *  wall,
+ *
+ *    d_0 = int_0^inf x M(x) dx / int_0^inf M(x) dx     (0.406 h, quadratic, node in the wall)
+ *
+ *  is greater when there is a gap, by about 0.6 of its width. Points at the centers of cells of
+ *  size s stand for the integrals as the midpoint rule does, whose error at the wall is (Euler,
+ *  Maclaurin)
+ *
+ *    sum_p s f(x_p) - int_0^inf f dx = s^2/24 f'(0) + O(s^4)
+ *
+ *  Points with a size (GIMP, CPDI) integrate M exactly, but x is that of their center: - s^2/12 M'.
+ *  Points that are about to cross the wall count as deep inside, so that single ones do not
+ *  pass. */
 
 #include "walls/mpm_wall_gap.h"
 
@@ -47,15 +41,11 @@ static constexpr int REACH = 3, SAMPLES = 64;    // cells from the wall, places 
 static constexpr double FARTHEST = 4.0;          // more than a node at the wall sees
 
 // what the positions of points do not tell about the surface of a body, in node spacings
-
 static constexpr double TOLERANCE = 0.01;
 
 // points nearer to the wall than this part of their spacing (undeformed: 0.5) are about to cross
 // it: they count as this many cells behind it when they are right at it, and more beyond
-
 static constexpr double NEAR = 0.25, BEHIND = 100.0;
-
-/* ---------------------------------------------------------------------- */
 
 MPMContactDistance::MPMContactDistance(const MPMField &field, const double *positions,
                                        const double *weights, int n) :
@@ -92,8 +82,6 @@ double MPMContactDistance::distance(double size2) const
   return (moment + size2 / (sized ? 12.0 : 24.0) * at_wall) / std::max(all, 0.5 * volume);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallGap::Sums::add(double weight, const Sums &other)
 {
   volume += weight * other.volume;
@@ -113,8 +101,6 @@ double MPMWallGap::Sums::beyond(const MPMContactDistance &full) const
   return distance / volume - full.distance(size2 / volume);
 }
 
-/* ---------------------------------------------------------------------- */
-
 /** Of the middle of a block whose points are out of reach. */
 double MPMWallGap::farthest(const MPMField &field, double more)
 {
@@ -123,12 +109,9 @@ double MPMWallGap::farthest(const MPMField &field, double more)
   return (FARTHEST + more + radius) * lattice.h;
 }
 
-/* ----------------------------------------------------------------------
-   Points that no node at the wall sees are left out, most of them by the distance of the middle of
-   their block: the distance of another place is less by no more than their distance from each
-   other. The domains of points with a size can reach far.
-------------------------------------------------------------------------- */
-
+/** Points that no node at the wall sees are left out, most of them by the distance of the middle of
+ *  their block: the distance of another place is less by no more than their distance from each
+ *  other. The domains of points with a size can reach far. */
 void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth, double reach,
                      const std::function<double(const double *)> &away, double more)
 {
@@ -149,7 +132,6 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   const MPMRows x = field.frame->places();
 
   // no place in this ball is seen
-
   double center[3] = {0.0, 0.0, 0.0}, free = -1.0;
   const auto look = [&](const double *place) {
     const double d = away(place);

@@ -21,6 +21,7 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
 using MathSpecial::cube;
 
 static constexpr double HAND_OVER = 0.5;    // node spacings, see list_region()
@@ -42,11 +43,8 @@ void MPMWallNodes::topology_changed()
     list_region();
 }
 
-/* ----------------------------------------------------------------------
-   Blocks in which nodes can be held. Around a moving region that is away from the body there is
-   nothing to hold
-------------------------------------------------------------------------- */
-
+/** Blocks in which nodes can be held. Around a moving region that is away from the body there is
+ *  nothing to hold. */
 std::vector<char> MPMWallNodes::blocks_to_look_at() const
 {
   Grid &grid = field.grid;
@@ -69,24 +67,12 @@ std::vector<char> MPMWallNodes::blocks_to_look_at() const
   return looks_at;
 }
 
-/* ----------------------------------------------------------------------
-   Nodes inside the region or on its surface, for the state of the region that it has now.
-
-   When the surface of a moving region crosses a plane of nodes, the nodes are not taken or let go
-   at once, but over half a node spacing outside: a node there goes (1 - s^3)^3 of the way to the
-   velocity of the wall in each step, s = 1 at the end. Material in a grip had no part in the strain
-   of the rest of the body; if it is let go at once, it is not in equilibrium and makes waves as
-   high as the force itself. A node that is taken at once gets the missing momentum in one step.
-   With slow motion the node slips behind the wall before it is let go: by (1 - share)/share of the
-   change that its acceleration gives in each step, which is little at first because of the power of
-   s.
-
-   Implicit steps have no hand-over (moves_and_holds): to go a part of the way is no projection, and
-   in equilibrium a node that goes half the way in each step lags as much as one that is not held.
-   Lines through the surface hold the material in front of it, as for separate. Where there is also
-   material behind, in a grip, single nodes up to half a spacing outside act, fully.
-------------------------------------------------------------------------- */
-
+/** Nodes inside the region or on its surface, for the state of the region that it has now. When the
+ *  surface moves across a plane of nodes, these are taken and let go over half a node spacing
+ *  outside: a node goes (1 - s^3)^3 of the way to the velocity of the wall in each step, s = 1 at
+ *  the end. At once, there would be waves as high as the force itself (DECISIONS.md). Implicit
+ *  steps have no hand-over (moves_and_holds), as a part of the way is no projection: lines hold the
+ *  material in front, and in a grip single nodes up to half a spacing outside act, fully. */
 void MPMWallNodes::list_region()
 {
   Grid &grid = field.grid;
@@ -150,8 +136,6 @@ void MPMWallNodes::list_region()
   if ((!hands_over || wall.moves_and_holds) && !wall.holds_surface()) crossings.take_nodes(nodes);
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallNodes::follow_region(double dt)
 {
   if (wall.region->varshape) {
@@ -164,7 +148,6 @@ void MPMWallNodes::follow_region(double dt)
       if (std::max(std::fabs(distance), std::fabs(node.distance)) >= far) continue;
 
       // the normal speed of the surface replaces that of the rigid motion
-
       wall.motion.velocity(field.grid, node.node, v);
       node.growth = (node.distance - distance) / dt - MathExtra::dot3(v, node.normal);
     }
@@ -184,8 +167,6 @@ void LAMMPS_NS::update_motion(MPMWall &wall, std::vector<MPMWallNodes> &fields, 
   if (moves)
     for (auto &list : fields) list.follow_region(dt);
 }
-
-/* ---------------------------------------------------------------------- */
 
 std::size_t MPMWallNodes::first_crossing() const
 {
@@ -237,15 +218,10 @@ void MPMWallNodes::act_on_node(MPMWallContact &contact, MPMWallNode &node)
       slide[d] = r[d] - V[d] - normal * n[d];
       length += slide[d] * slide[d];
     }
-    const double push = node.touched ? -normal : 0.0;
-    const double of_water = node.touched ? contact.water_on(&node.node, 1, n) / r[3] : 0.0;
-    const double keep = 1.0 - contact.tangential_share(node.state, push, of_water, sqrt(length));
-    if (node.state == MPMContactState::OPEN) {
-      if (of_water > 0.0) contact.push_by_water(field, &node.node, 1, n);
-      return;
-    }
+    double share;
+    if (!contact.holds(field, node, &node.node, 1, n, -normal, sqrt(length), share, r[3])) return;
+    const double keep = 1.0 - share;
     for (int d = 0; d < dim; d++) v[d] = V[d] + keep * slide[d];
-    if (node.state == MPMContactState::SLIDING) reaction.begin_sliding(n);
   }
   const double whole[3] = {v[0], v[1], v[2]};
   for (int d = 0; d < dim && node.share < 1.0; d++) v[d] = r[d] + node.share * (v[d] - r[d]);
@@ -263,8 +239,6 @@ void MPMWallNodes::find_water(MPMWallContact &contact, double dt) const
   for (const auto &node : nodes) near[node.node / NODES_PER_BLOCK] = 1;
   contact.find_water(field, near, dt);
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMWallNodes::list_ties(std::vector<int64_t> &ties, std::vector<int64_t> &others) const
 {
@@ -313,4 +287,113 @@ double MPMWallNodes::memory_usage() const
   return mirrors.memory_usage() + nodes.capacity() * sizeof(MPMWallNode) +
       crossings.lines.capacity() * sizeof(MPMCrossing) +
       approaches.capacity() * sizeof(MPMApproach);
+}
+
+/* Blocks of nodes next to those that points reach. Lines of nodes through the surface of a region
+ *  can have nodes that only points of another rank reach. A moving region needs different blocks
+ *  all the time: they are made around its place at that time, a bit wider, and made anew when it
+ *  has moved by that margin. */
+
+static constexpr double WIDER = 2.0;    // node spacings, around a region that moves
+
+void MPMWallNodes::extend_topology()
+{
+  mirrors.find_faces();
+  const bool several_ranks = wall.has_several_ranks();
+  if (several_ranks && (wall.looks_ahead || wall.moves_and_holds)) extend_to_approaches();
+  if (!wall.region)
+    mirrors.extend_topology();
+  else if (several_ranks)
+    crossings.extend_topology();
+}
+
+bool MPMWallNodes::needs(const Grid::Block &block) const
+{
+  return wall.region || mirrors.needs(block, wall.looks_ahead ? SOUGHT : 0);
+}
+
+bool MPMCrossingLines::needs_topology() const
+{
+  return !blocks_known || !(wall.way_since(blocks_at) <= WIDER * field.lattice.h);
+}
+
+/** Lines along several axes share nodes, so blocks all around are needed. */
+void MPMCrossingLines::extend_topology()
+{
+  if (!wall.acts_across()) return;
+  const bool moves = wall.region_moves(), known = wall.knows_place();
+  Grid &grid = field.grid;
+  const int dim = field.lattice.dim;
+  const double h = field.lattice.h,
+               reach = (0.5 * grid.side * sqrt((double) dim) + 4.0 + (moves ? WIDER : 0.0)) * h;
+  if (!moves) wall.region->prematch();
+  if (moves && known) {
+    wall.restore_region();
+    std::copy_n(wall.state.region, 4, blocks_at);
+    blocks_known = true;
+  }
+  const auto is_near = [&](const int *b) {
+    if (!known) return true;
+    const int first[3] = {b[0] * grid.side, b[1] * grid.side, b[2] * grid.side};
+    double middle[3];
+    field.lattice.node_position(first, middle);
+    for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
+    return fabs(wall.surface->distance(middle, MPMWall::FAR * h)) <= reach;
+  };
+  const auto nblocks = (int) grid.blocks.size();
+  for (int ib = 0; ib < nblocks; ib++) {
+    const int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
+    if (!is_near(b)) continue;
+    const int rings = wall.holds_surface() ? 2 : 1,
+              flat = dim == 3 ? rings : 0;    // see MPMCoupledLines
+    for (int k = -flat; k <= flat; k++)
+      for (int j = -rings; j <= rings; j++)
+        for (int i = -rings; i <= rings; i++) {
+          const int next[3] = {b[0] + i, b[1] + j, b[2] + k};
+          if (is_near(next)) grid.activate(next);
+        }
+  }
+}
+
+/** Ranks that have a node of a line need all nodes between it and the wall, and the next ones
+ *  behind it. */
+void MPMWallNodes::extend_to_approaches()
+{
+  Region *const region = wall.region;
+  Grid &grid = field.grid;
+  const int dim = field.lattice.dim, nblocks = (int) grid.blocks.size(),
+            reach = (SOUGHT + grid.side - 1) / grid.side;
+  const double h = field.lattice.h;
+  const bool known = region && !wall.region_moves() && region->nregion == 1;
+  if (known) region->prematch();
+  for (int ib = 0; ib < nblocks; ib++) {
+    const int b[3] = {grid.blocks[ib].b[0], grid.blocks[ib].b[1], grid.blocks[ib].b[2]};
+    for (const auto &face : mirrors.faces)
+      for (int k = -reach; k <= reach; k++) {
+        int next[3] = {b[0], b[1], b[2]};
+        next[face.axis] += k;
+        const auto away = [&](int block) {
+          const int first = block * grid.side - face.plane;
+          return face.inward > 0 ? first : -first - grid.side + 1;    // of the nearest node
+        };
+        if (away(b[face.axis]) <= SOUGHT && away(next[face.axis]) <= SOUGHT &&
+            away(next[face.axis]) > -2 * grid.side)
+          grid.activate(next);
+      }
+    if (!region) continue;
+    double middle[3];
+    const int first[3] = {b[0] * grid.side, b[1] * grid.side, b[2] * grid.side};
+    field.lattice.node_position(first, middle);
+    for (int d = 0; d < dim; d++) middle[d] += 0.5 * (grid.side - 1) * h;
+    if (known &&
+        std::fabs(wall.surface->distance(middle, MPMWall::FAR * h)) >
+            (0.5 * grid.side * std::sqrt((double) dim) + SOUGHT) * h)
+      continue;
+    const int width = 2 * reach + 1;
+    for (int k = 0; k < (dim == 3 ? width * width * width : width * width); k++) {
+      const int next[3] = {b[0] + k % width - reach, b[1] + k / width % width - reach,
+                           dim == 3 ? b[2] + k / (width * width) - reach : b[2]};
+      grid.activate(next);
+    }
+  }
 }

@@ -61,16 +61,9 @@ void MPMWallReaction::end_field()
   if (ledger) ledger->transfer += collided * force->mvv2e;
 }
 
-/* ----------------------------------------------------------------------
-   sets the velocity of a node, also the old one unless null, next to a wall with the velocity V,
-   and books the effect. Work is impulse times the velocity with which points are then moved, less
-   half of the change of the velocity of the wall, so that a wall at rest works only by friction.
-   The kinetic energy of the nodes changes by the change of velocity times the mean of old and new
-   one; the part that is not work is lost, most of it energy that forces had given to nodes that
-   cannot move. A node that goes only part of the way slips: its work is that of the velocity for
-   all of it (whole).
-------------------------------------------------------------------------- */
-
+/** Work is impulse times the velocity with which points are then moved, less half of the change of
+ *  the velocity of the wall. The kinetic energy of the nodes changes by the change of velocity
+ *  times the mean of old and new one; the part that is not work is lost. */
 void MPMWallReaction::set_velocity(int64_t node, const double *V, const double *v,
                                    const double *old, const double *whole)
 {
@@ -115,10 +108,7 @@ void MPMWallReaction::add_moment(const MPMField &field, int64_t node, const doub
   for (int d = 0; d < 3; d++) impulse[3 + d] += moment[d];
 }
 
-/* ----------------------------------------------------------------------
-   impulse on a node, counted like any other, see set_velocity()
-------------------------------------------------------------------------- */
-
+/** Impulse on a node, counted like any other, see set_velocity(). */
 void MPMWallReaction::add(MPMField &field, int64_t node, const double *push)
 {
   Grid &grid = field.grid;
@@ -141,16 +131,9 @@ void MPMWallReaction::add(MPMField &field, int64_t node, const double *push)
   if (field.ledger.on) field.ledger.transfer += (gained - moved) * force->mvv2e;
 }
 
-void MPMWallReaction::begin_sliding(const double *normal)
-{
-  sliding = heating && counting ? normal : nullptr;
-}
-
-/* ----------------------------------------------------------------------
-   Gives the heat of friction to a node whose velocity changes to v. The work of the tangential
-   impulse was counted with another velocity; returns the work per mass that the ledger must add
-------------------------------------------------------------------------- */
-
+/** Gives the heat of friction to a node whose velocity changes to v. The work of the tangential
+ *  impulse was counted with another velocity; returns the work per mass that the ledger must
+ *  add. */
 double MPMWallReaction::slip_work(int64_t node, const double *V, const double *change,
                                   const double *v, const double *counted)
 {
@@ -172,8 +155,6 @@ double MPMWallReaction::slip_work(int64_t node, const double *V, const double *c
   heating->at_wall(place, record, heat, grid.owns(node));
   return by_wall - heat / (record[3] * force->mvv2e) - work;
 }
-
-/* ---------------------------------------------------------------------- */
 
 double MPMWallReaction::work() const
 {

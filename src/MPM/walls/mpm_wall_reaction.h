@@ -43,7 +43,7 @@ class MPMWallReaction : protected Pointers {
 
   /** Until end_sliding(), the velocities that are set are those of material that slides along a
    *  wall. */
-  void begin_sliding(const double *normal);
+  void begin_sliding(const double *normal) { sliding = heating && counting ? normal : nullptr; }
   void end_sliding() { sliding = nullptr; }
   /** Sets the velocity of a node to v, also the old one unless null, next to a wall with the
    *  velocity V. whole: velocity with which the impulse does work, if it is not v. */

@@ -6,15 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Contact that an implicit solver decides. While it is known what touches, walls hold the normal
-// component of their lines of nodes and single nodes, as slip does; the impulse that this needs
-// gives the force N of each. Friction acts at the surface: on the nodes of a line in the shares a_k
-// with which they make the velocity there, so that a uniform shear stress is in balance node by
-// node. The slip is s = sum_k a_k (u_k - dt V_k), along the surface.
-
 #include "walls/mpm_wall_trial.h"
 
 #include "atom.h"
+#include "base/mpm_points.h"
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
@@ -35,6 +30,11 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// Contact that an implicit solver decides. While it is known what touches, walls hold the normal
+// component of their lines of nodes and single nodes, as slip does; the impulse that this needs
+// gives the force N of each. Friction acts at the surface: on the nodes of a line in the shares a_k
+// with which they make the velocity there, so that a uniform shear stress is in balance node by
+// node. The slip is s = sum_k a_k (u_k - dt V_k), along the surface.
 static constexpr double LONGEST = 0.99;    // longest w, so that a body that slips keeps a stiffness
 // least pull to let go, relative to the largest push; least depth in the wall, in node spacings
 static constexpr double WRONG = 1.0e-9;
@@ -49,11 +49,6 @@ static constexpr double NOT_KNOWN = 0.03;
 static constexpr double THROUGH = 0.5;     // node spacings in the wall where contact has failed
 static constexpr double AT_WALL = 0.01;    // node spacings
 
-double MPMWallTrial::tolerance()
-{
-  return NOT_KNOWN;
-}
-
 bool MPMWallTrial::decides(const MPMWallNodes &list) const
 {
   return in_trials && (wall.decides() || wall.moves_and_holds) && &list.field == field;
@@ -64,19 +59,12 @@ bool MPMWallTrial::has_friction() const
   return wall.friction > 0.0;
 }
 
-double MPMWallTrial::width() const
-{
-  return std::max(eps, soft);
-}
-
 MPMWallNodes &MPMWallTrial::nodes()
 {
   return *std::find_if(fields.begin(), fields.end(), [this](const MPMWallNodes &list) {
     return &list.field == field;
   });
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMWallTrial::begin_trials(MPMField &of, double step, double time, double regular, bool rests)
 {
@@ -98,7 +86,7 @@ void MPMWallTrial::begin_trials(MPMField &of, double step, double time, double r
   rounds = 0;
   list.approaches.clear();
   if (separates) {
-    search.find_contacts(list, dt, tolerance());
+    search.find_contacts(list, dt, NOT_KNOWN);
     search.find_approaches(list, dt);
     find_clearance(list);
   } else if (wall.moves_and_holds && wall.acts_across()) {
@@ -109,7 +97,6 @@ void MPMWallTrial::begin_trials(MPMField &of, double step, double time, double r
 
   // Where other material touches, round-off would decide whether material next to the wall does. In
   // statics, nothing else may hold it
-
   const std::size_t first_node = list.first_node();
   int any = 0, touched = 0;
   for (std::size_t k = 0; k < constraints.size() && separates; k++)
@@ -210,23 +197,6 @@ bool MPMWallTrial::is_deep(const MPMWallNodes &list, std::size_t node) const
   return !wall.region || -list.nodes[node].distance > MPMWall::DEEPEST * list.field.lattice.h;
 }
 
-/* ---------------------------------------------------------------------- */
-
-void MPMWallTrial::forget_pushes()
-{
-  for (auto &c : constraints) c.impulse = 0.0;
-}
-
-void MPMWallTrial::take_base()
-{
-  for (auto &c : constraints) c.base = c.impulse;
-}
-
-void MPMWallTrial::take_forces(double scale)
-{
-  for (auto &c : constraints) c.force = (c.impulse - c.base) / scale;
-}
-
 bool MPMWallTrial::close_gaps(bool yes)
 {
   closes = yes;
@@ -251,26 +221,29 @@ void MPMWallTrial::find_slip(const MPMContactConstraint &c, const double *u, dou
   for (int d = 0; d < 3; d++) slip[d] -= away * c.normal[d];
 }
 
-/** Calls use(constraint) for all contacts that are held. */
-template <class Use> void MPMWallTrial::visit_active(const Use &use)
+/** Calls use(constraint) for all contacts that are held and have friction. */
+template <class Use> void MPMWallTrial::visit_rubbing(const Use &use)
 {
   for (auto &c : constraints)
-    if (c.active && c.n > 0) use(c);
+    if (wall.friction != 0.0 && c.active && c.n > 0) use(c);
 }
 
-/* ---------------------------------------------------------------------- */
+/** (|s|^2 + eps^2)^(1/2), see MPMTrialContact. */
+double MPMWallTrial::length(const MPMContactConstraint &c) const
+{
+  const double width = std::max(eps, soft);
+  return std::sqrt(MathExtra::lensq3(c.slip) + width * width);
+}
 
 void MPMWallTrial::add_friction(const double *u, double *force)
 {
   const int dim = field->lattice.dim;
-  if (wall.friction == 0.0) return;
-  const double width = this->width();
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     double away;
     find_slip(c, u, slip_time, c.slip, away);
     MathExtra::zero3(c.friction);
     if (!(c.force > 0.0)) return;
-    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width);
+    const double length = this->length(c);
     for (int d = 0; d < dim; d++) {
       c.friction[d] = -wall.friction * c.force * c.slip[d] / length;
       for (int j = 0; j < c.n; j++) force[dim * c.node[j] + d] += c.weight[j] * c.friction[d];
@@ -278,39 +251,31 @@ void MPMWallTrial::add_friction(const double *u, double *force)
   });
 }
 
-/* ----------------------------------------------------------------------
-   Where a line reverses its slip, friction changes its sign within a distance of eps, which a
-   derivative taken farther away does not show: Newton's method would oscillate. Therefore w = s/l,
-   l = (|s|^2 + eps^2)^(1/2), is an unknown of its own, and l w = s is linearized:
-
-     l dw + w s.ds/l = s + ds - l w
-
-   so that friction changes as -mu N (ds - w s.ds/l)/l. This is stiff as long as w, which is a
-   little shorter than one, does not have the direction of s, and never quite soft (T.F. Chan, G.H.
-   Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964, for other sums of lengths).
-------------------------------------------------------------------------- */
+/* Where a line reverses its slip, friction changes its sign within eps. Therefore w = s/l, l =
+ *  (|s|^2 + eps^2)^(1/2), is an unknown of its own, and l w = s is linearized (T.F. Chan, G.H.
+ *  Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964):
+ *
+ *    l dw + w s.ds/l = s + ds - l w
+ *
+ *  so that friction changes as -mu N (ds - w s.ds/l)/l, which is never quite soft. */
 
 /** Change of direction for a change ds of the slip: (ds - w s.ds/l)/l. */
 void MPMWallTrial::change_of_direction(const MPMContactConstraint &c, const double *slip,
                                        double *change) const
 {
-  const double width = this->width(), length = std::sqrt(MathExtra::lensq3(c.slip) + width * width),
-               along = MathExtra::dot3(c.slip, slip) / length;
+  const double length = this->length(c), along = MathExtra::dot3(c.slip, slip) / length;
   for (int d = 0; d < 3; d++) change[d] = (slip[d] - along * c.direction[d]) / length;
 }
 
 void MPMWallTrial::add_friction_change(const double *du, double scale, double *dforce)
 {
   const int dim = field->lattice.dim;
-  if (wall.friction == 0.0) return;
-  const double width = this->width();
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     if (!(c.force > 0.0)) return;
     double slip[3], turn[3], away;
     find_slip(c, du, 0.0, slip, away);
     change_of_direction(c, slip, turn);
-    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width),
-                 more = (c.impulse - c.base) / scale;
+    const double length = this->length(c), more = (c.impulse - c.base) / scale;
     for (int d = 0; d < dim; d++) {
       const double change = -wall.friction * (more * c.slip[d] / length + c.force * turn[d]);
       for (int j = 0; j < c.n; j++) dforce[dim * c.node[j] + d] += c.weight[j] * change;
@@ -320,14 +285,12 @@ void MPMWallTrial::add_friction_change(const double *du, double scale, double *d
 
 void MPMWallTrial::correct(const double *du)
 {
-  if (wall.friction == 0.0) return;
-  const double width = this->width();
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     double slip[3], turn[3], away;
     find_slip(c, du, 0.0, slip, away);
     change_of_direction(c, slip, turn);
     double *const w = c.direction;
-    const double length = std::sqrt(MathExtra::lensq3(c.slip) + width * width);
+    const double length = this->length(c);
     for (int d = 0; d < 3; d++) w[d] = c.slip[d] / length + turn[d];
     const double size = MathExtra::len3(w);
     if (size > LONGEST) MathExtra::scale3(LONGEST / size, w);
@@ -337,8 +300,7 @@ void MPMWallTrial::correct(const double *du)
 void MPMWallTrial::add_friction_blocks(double *blocks)
 {
   const int dim = field->lattice.dim;
-  if (wall.friction == 0.0) return;
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     if (!(c.force > 0.0)) return;
     double along[3] = {0.0, 0.0, 0.0}, turn[3];
     const double slope = wall.friction * c.force;
@@ -355,23 +317,19 @@ void MPMWallTrial::add_friction_blocks(double *blocks)
 
 void MPMWallTrial::add_friction_stiffness(double *stiffness)
 {
-  if (wall.friction == 0.0) return;
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     if (!(c.force > 0.0)) return;
     double turn[3];
     change_of_direction(c, c.slip, turn);
-    const double size = MathExtra::lensq3(c.slip), length = std::sqrt(size + width() * width()),
-                 along = size > 0.0 ? MathExtra::dot3(turn, c.slip) / size : 1.0 / length;
+    const double size = MathExtra::lensq3(c.slip),
+                 along = size > 0.0 ? MathExtra::dot3(turn, c.slip) / size : 1.0 / length(c);
     for (int j = 0; j < c.n; j++)
       stiffness[c.node[j]] += c.weight[j] * wall.friction * c.force * along;
   });
 }
 
-/* ----------------------------------------------------------------------
-   At first, everything that is wrong is changed. If this oscillates, only the worst half is
-   changed, and what is almost right stays
-------------------------------------------------------------------------- */
-
+/** At first, everything that is wrong is changed. If this oscillates, only the worst half is
+ *  changed, and what is almost right stays. */
 bool MPMWallTrial::decide(const double *u, double unbalanced)
 {
   if (wall.kind != MPMWall::SEPARATE || unbalanced > 0.0) return false;
@@ -406,16 +364,12 @@ bool MPMWallTrial::decide(const double *u, double unbalanced)
   return changed;
 }
 
-/* ----------------------------------------------------------------------
-   friction at the end of the step, before walls act; its work is that with the final velocities of
-   the nodes
-------------------------------------------------------------------------- */
-
+/** Friction at the end of the step, before walls act; its work is that with the final velocities of
+ *  the nodes. */
 void MPMWallTrial::apply_friction(MPMWallReaction &reaction)
 {
   const int dim = field->lattice.dim;
-  if (wall.friction == 0.0) return;
-  visit_active([&](MPMContactConstraint &c) {
+  visit_rubbing([&](MPMContactConstraint &c) {
     for (int j = 0; j < c.n; j++) {
       const int64_t node = c.node[j];
       const double *const record = field->grid.record(node);
@@ -430,8 +384,6 @@ void MPMWallTrial::apply_friction(MPMWallReaction &reaction)
   });
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMWallTrial::act_on_approaches(MPMWallReaction &reaction, MPMWallNodes &list)
 {
   const std::size_t first = list.first_approach();
@@ -439,11 +391,8 @@ void MPMWallTrial::act_on_approaches(MPMWallReaction &reaction, MPMWallNodes &li
     act_on_approach(reaction, list, list.approaches[k], constraints[first + k]);
 }
 
-/* ----------------------------------------------------------------------
-   Holds the normal component at the surface of the material, as in MPMCrossingLines. The wall does
-   no work on the way to it
-------------------------------------------------------------------------- */
-
+/** Holds the normal component at the surface of the material, as in MPMCrossingLines. The wall does
+ *  no work on the way to it. */
 void MPMWallTrial::act_on_approach(MPMWallReaction &reaction, MPMWallNodes &list,
                                    const MPMApproach &line, MPMContactConstraint &c)
 {
@@ -478,21 +427,15 @@ void MPMWallTrial::act_on_approach(MPMWallReaction &reaction, MPMWallNodes &list
 /** Distances of points from the wall at the start of the step. */
 void MPMWallTrial::find_clearance(MPMWallNodes &list)
 {
-  const auto &faces = list.mirrors.faces;
-  const int nfaces = wall.region ? 1 : (int) faces.size();
-  clearance.resize((std::size_t) nfaces * atom->nmax);
+  std::vector<std::function<double(const double *)>> away;
   if (wall.region && !wall.region_moves()) wall.region->prematch();
-  const auto away = wall.region ? wall.distance_from_region(*field, dt) : nullptr;
+  if (wall.region) away.push_back(wall.distance_from_region(*field, dt));
+  for (const auto &face : list.mirrors.faces) away.push_back(face.distance(*domain));
+  clearance.resize(away.size() * atom->nmax);
   for (const auto &run : field->map->runs)
     for (bigint i = run.first; i < run.last; i++)
-      for (int f = 0; f < nfaces; f++) {
-        const double *const x = atom->x[i];
-        double &distance = clearance[nfaces * i + f];
-        if (wall.region)
-          distance = away(x);
-        else
-          distance = faces[f].inward * (x[faces[f].axis] - faces[f].position(*domain));
-      }
+      for (std::size_t f = 0; f < away.size(); f++)
+        clearance[away.size() * i + f] = away[f](atom->x[i]);
 }
 
 /** Checks that no material that was in front of the wall, and was not found to touch it, is in the
@@ -538,4 +481,63 @@ double MPMWallTrial::memory_usage() const
 {
   return clearance.capacity() * sizeof(double) +
       constraints.capacity() * sizeof(MPMContactConstraint);
+}
+
+// Grips: regions that move with stick, in implicit steps, where material goes through their
+// surface. A grip cuts the body: points inside move with it and have no part in the balance of
+// forces, and the line of nodes through the surface holds the material there. Where lines share
+// nodes, at edges and on curved surfaces, nodes are held one by one.
+
+/** Finds the share of each point that is outside of the grip (left); a point that the surface cuts
+ *  is divided by its width. */
+bool MPMWallTrial::find_carried(MPMField &of, std::vector<double> &left)
+{
+  wall.is_grip = wall.moves_and_holds && wall.kind == MPMWall::STICK && wall.acts_across();
+  if (!wall.is_grip) return false;
+  left.resize(atom->nmax, 1.0);
+  const int dim = of.lattice.dim;
+  const double h = of.lattice.h;
+  const auto away = wall.distance_from_region(of, dt);
+  for (const auto &run : of.map->runs)
+    for (bigint i = run.first; i < run.last; i++) {
+      const double *const x = atom->x[i], distance = away(x), *const F = of.points->F[i];
+      if (distance > h) continue;
+      double width = 0.0;
+      if (distance > -h) {
+        double y[3], v[3], n[3];
+        wall.motion.velocity(x, v);
+        for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
+        wall.normal(of, y, n);
+        for (int c = 0; c < dim; c++) {
+          double along = 0.0;
+          for (int d = 0; d < dim; d++) along += F[3 * d + c] * n[d];
+          width += along * along;
+        }
+        width = std::sqrt(width) * std::pow(atom->vfrac[i], 1.0 / dim);
+      }
+      const double share = width > 0.0 ? 0.5 + distance / width : (double) (distance > 0.0);
+      if (share < 1.0) left[i] = std::min(left[i], std::max(share, 0.0));
+    }
+  return true;
+}
+
+/** Spreads the force on each line over its nodes, in the shares of the constraint. */
+void MPMWallTrial::constrain_carried(MPMField &of, double *force)
+{
+  if (!wall.is_grip) return;
+  const int dim = of.lattice.dim;
+  for (const auto &list : fields) {
+    if (&list.field != &of) continue;
+    for (const auto &c : list.crossings.lines) {
+      if (!c.goes_through(of.grid)) continue;
+      for (int d = 0; d < dim; d++) {
+        double all = 0.0, shares = 0.0;
+        for (int k = 0; k < c.n; k++) {
+          all += force[dim * c.node[k] + d];
+          shares += c.weight[k];
+        }
+        for (int k = 0; k < c.n; k++) force[dim * c.node[k] + d] = all * c.weight[k] / shares;
+      }
+    }
+  }
 }

@@ -40,8 +40,6 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   bool decides(const MPMWallNodes &) const;
   /** Has a solver begun trials in this run? */
   bool has_begun() const { return in_trials; }
-  /** Distance in node spacings at which material counts as touching the wall. */
-  static double tolerance();
   /** The friction acts on the nodes at the end of the step, before walls act. */
   void apply_friction(MPMWallReaction &);
   /** Holds the material that was not at the wall at the start of the step. */
@@ -52,11 +50,20 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   bool close_gaps(bool yes) override;
   void check_arrival() override;
   bool find_carried(MPMField &, std::vector<double> &) override;
-  void bear_carried(MPMField &, double *force) override;
+  void constrain_carried(MPMField &, double *force) override;
   bool has_friction() const override;
-  void forget_pushes() override;
-  void take_base() override;
-  void take_forces(double scale) override;
+  void clear_impulses() override
+  {
+    for (auto &c : constraints) c.impulse = 0.0;
+  }
+  void take_base() override
+  {
+    for (auto &c : constraints) c.base = c.impulse;
+  }
+  void take_forces(double scale) override
+  {
+    for (auto &c : constraints) c.force = (c.impulse - c.base) / scale;
+  }
   void add_friction(const double *u, double *force) override;
   void add_friction_change(const double *du, double scale, double *dforce) override;
   void add_friction_blocks(double *blocks) override;
@@ -64,7 +71,7 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   void correct(const double *du) override;
   bool decide(const double *u, double unbalanced) override;
   void soften(double by) override { soft = by; }
-  void foresee_velocities(const double *v, double share) override
+  void predict_velocities(const double *v, double share) override
   {
     final_velocity = v;
     friction_share = share;
@@ -92,8 +99,8 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
                        MPMContactConstraint &);
   bool is_deep(const MPMWallNodes &, std::size_t node) const;
   void find_clearance(MPMWallNodes &);
-  double width() const;
-  template <class Use> void visit_active(const Use &use);
+  double length(const MPMContactConstraint &) const;
+  template <class Use> void visit_rubbing(const Use &use);
   void change_of_direction(const MPMContactConstraint &, const double *slip, double *change) const;
   void find_slip(const MPMContactConstraint &, const double *u, double time, double *slip,
                  double &away) const;

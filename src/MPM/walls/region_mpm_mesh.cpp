@@ -8,6 +8,7 @@
 
 #include "walls/region_mpm_mesh.h"
 
+#include "base/mpm_input.h"
 #include "base/mpm_options.h"
 #include "comm.h"
 #include "domain.h"
@@ -48,40 +49,28 @@ Options MPMRegionMeshOptions::declare()
   return o;
 }
 
-/* ----------------------------------------------------------------------
-   The bytes of a file, which one rank reads, in pieces that a count of MPI can have
-------------------------------------------------------------------------- */
-
+/** The bytes of a file, which one rank reads. */
 static std::string read_bytes(LAMMPS *lmp, const char *file)
 {
-  constexpr std::size_t PIECE = 1 << 28;
   std::string bytes, problem;
-  bigint size = 0;
   if (lmp->comm->me == 0) {
     FILE *fp = fopen(file, "rb");
     if (fp) {
       char buffer[65536];
       for (std::size_t n; (n = fread(buffer, 1, sizeof(buffer), fp)) > 0;) bytes.append(buffer, n);
-      if (ferror(fp)) problem = utils::getsyserror();
-      fclose(fp);
-    } else
-      problem = utils::getsyserror();
-    size = problem.empty() ? (bigint) bytes.size() : -1;
+    }
+    if (!fp || ferror(fp)) problem = utils::getsyserror();
+    if (fp) fclose(fp);
   }
-  MPI_Bcast(&size, 1, MPI_LMP_BIGINT, 0, lmp->world);
-  if (size < 0)
+  broadcast(problem, lmp->world);
+  if (!problem.empty())
     lmp->error->all(FLERR, 2, "Cannot open file {} of region mpm/mesh: {}", file, problem);
-  bytes.resize(size);
-  for (std::size_t at = 0; at < bytes.size(); at += PIECE)
-    MPI_Bcast(&bytes[at], (int) std::min(PIECE, bytes.size() - at), MPI_CHAR, 0, lmp->world);
+  broadcast(bytes, lmp->world);
   return bytes;
 }
 
-/* ----------------------------------------------------------------------
-   region ID mpm/mesh file scale x y z keyword value ...
-   keywords of this style come before those of all regions
-------------------------------------------------------------------------- */
-
+/** Region ID mpm/mesh file scale x y z keyword value ... keywords of this style come before those
+ *  of all regions. */
 RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
 {
   if (narg < 7) utils::missing_cmd_args(FLERR, "region mpm/mesh", error);
@@ -141,10 +130,7 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   if (leaky && comm->me == 0) report(arg[2]);
 }
 
-/* ----------------------------------------------------------------------
-   What is wrong with a leaky surface
-------------------------------------------------------------------------- */
-
+/** What is wrong with a leaky surface. */
 void RegMPMMesh::report(const char *file) const
 {
   const SurfaceHoles &found = mesh->holes;
@@ -159,35 +145,32 @@ void RegMPMMesh::report(const char *file) const
     const double size = std::sqrt(MathExtra::distsq3(mesh->lo.data(), mesh->hi.data()));
     utils::logmesg(
         lmp,
-        "  {} open edges around {} hole{}, the widest with {:.4g} ({:.3g} % of the body) "
-        "at {:.6g} {:.6g} {:.6g}, patches with {:.3g} % of the area of the surface\n",
+        "  {} open edges around {} hole{}, the widest with {:.4g} ({:.3g} % of the body) at {:.6g} "
+        "{:.6g} {:.6g}, patches with {:.3g} % of the area of the surface\n",
         found.edges, found.holes, found.holes > 1 ? "s" : "", found.widest,
         100.0 * found.widest / size, found.at[0], found.at[1], found.at[2], 100.0 * found.area);
   }
   if (mesh->overlaps)
     utils::logmesg(lmp, "  parts overlap: the volume above has what they share several times\n");
-  error->warning(FLERR,
-                 "The surface of file {} is leaky: look at the region that it fills before you "
-                 "trust it",
-                 file);
+  error->warning(
+      FLERR,
+      "The surface of file {} is leaky: look at the region that it fills before you trust it",
+      file);
 }
 
 void RegMPMMesh::need_distance() const
 {
   if (leaky)
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Region {} has surface leaky, so that only what is inside of it is known and it cannot "
-        "be a wall or a rigid body: repair its mesh and use surface closed",
-        id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Region {} has surface leaky, so that only what is inside of it is known and it "
+               "cannot be a wall or a rigid body: repair its mesh and use surface closed",
+               id);
 }
 
 RegMPMMesh::~RegMPMMesh()
 {
   if (!copymode) delete[] contact;
 }
-
-/* ---------------------------------------------------------------------- */
 
 int RegMPMMesh::inside(double x, double y, double z)
 {
@@ -199,8 +182,6 @@ int RegMPMMesh::inside(double x, double y, double z)
   }
   return mesh->inside({x, y, z});
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Where x is in the coordinates of the mesh: match() takes it back to where the surface was
  *  read. */
@@ -221,10 +202,7 @@ double RegMPMMesh::distance(const double *x, double cutoff, double &along_z)
   return interior ? d : -d;
 }
 
-/* ----------------------------------------------------------------------
-   In 2d cells are columns at the z of the places, which is the same for all
-------------------------------------------------------------------------- */
-
+/** In 2d cells are columns at the z of the places, which is the same for all. */
 bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact, double size,
                                    double &distance)
 {
@@ -265,19 +243,15 @@ bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact,
   return !flat || along_z <= 0.5 * std::fabs(distance);
 }
 
-/* ----------------------------------------------------------------------
-   the closest point of each part of the surface, if x is on the given side and it is within the
-   cutoff
-------------------------------------------------------------------------- */
-
+/** The closest point of each part of the surface, if x is on the given side and it is within the
+ *  cutoff. */
 int RegMPMMesh::touch(const double *x, double cutoff, double side)
 {
   if (leaky)
-    error->one(
-        FLERR, Error::NOLASTLINE,
-        "Region {} has surface leaky, so that only what is inside of it is known and it cannot "
-        "be a wall: repair its mesh and use surface closed",
-        id);
+    error->one(FLERR, Error::NOLASTLINE,
+               "Region {} has surface leaky, so that only what is inside of it is known and it "
+               "cannot be a wall: repair its mesh and use surface closed",
+               id);
   const SurfaceMesh::Point here = {x[0], x[1], x[2]};
   const double known = mesh->bound(here);
   if (known * side < 0.0 || std::fabs(known) >= cutoff) return 0;

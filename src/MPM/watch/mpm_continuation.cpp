@@ -28,11 +28,8 @@
 
 using namespace LAMMPS_NS;
 
-/* ----------------------------------------------------------------------
-   fixes that do something to atoms. Of those of this package that have a state the atom style
-   tells; those with names in capitals are LAMMPS's own
-------------------------------------------------------------------------- */
-
+/** Fixes that do something to atoms. Of those of this package that have a state the atom style
+ *  tells; those with names in capitals are LAMMPS's own. */
 static bool acts(const Fix &fix)
 {
   const std::string style = fix.style;
@@ -42,10 +39,6 @@ static bool acts(const Fix &fix)
     if (utils::strmatch(style, output)) return false;
   return !(fix.restart_global && utils::strmatch(style, "^mpm"));
 }
-
-/* ----------------------------------------------------------------------
-   one line for each: a name and a value, or a fix with its style
-------------------------------------------------------------------------- */
 
 void MPMContinuation::sums(double &mass, double &motion) const
 {
@@ -74,6 +67,7 @@ static double value(const std::string &lines, const char *name)
                                  : std::strtod(lines.c_str() + at + strlen(name) + 1, nullptr);
 }
 
+/** One line for each: a name and a value, or a fix with its style. */
 std::string MPMContinuation::state() const
 {
   double mass, motion;
@@ -109,10 +103,7 @@ std::string MPMContinuation::other_lattice() const
   return "";
 }
 
-/* ----------------------------------------------------------------------
-   a fix without a state may have another ID
-------------------------------------------------------------------------- */
-
+/** A fix without a state may have another ID. */
 std::string MPMContinuation::missing_fixes() const
 {
   std::map<std::string, int> found;
@@ -141,8 +132,8 @@ void MPMContinuation::check_points() const
   if (differ(mass, mass_then))
     error->warning(FLERR,
                    "Fix mpm {}: its points have the mass {:.6g} in the restart file and {:.6g} "
-                   "now: the file has the points, so that commands such as create_points, set, "
-                   "and delete_atoms must not be repeated, and groups not be defined anew",
+                   "now: the file has the points, so that commands such as create_points, set, and "
+                   "delete_atoms must not be repeated, and groups not be defined anew",
                    field.id(), mass_then, mass);
   else if (differ(motion, motion_then))
     error->warning(FLERR,
@@ -167,8 +158,6 @@ void MPMContinuation::check_materials() const
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMContinuation::check(bool first)
 {
   if (expected.empty()) return;
@@ -178,8 +167,8 @@ void MPMContinuation::check(bool first)
     const std::string missing = missing_fixes();
     if (!missing.empty())
       error->warning(FLERR,
-                     "The run that wrote the restart file had {}, which this one has not: "
-                     "restart files have no commands, repeat all that shall go on to act",
+                     "The run that wrote the restart file had {}, which this one has not: restart "
+                     "files have no commands, repeat all that shall go on to act",
                      missing);
     const int then = (int) value(expected, "exclusions"), now = exclusions(*neighbor);
     const bool include = value(expected, "include") != 0.0;

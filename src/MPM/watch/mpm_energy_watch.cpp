@@ -14,14 +14,14 @@
 #include "field/mpm_every.h"
 #include "field/mpm_field.h"
 #include "field/mpm_guard.h"
-#include "field/mpm_internal_force.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "force.h"
 #include "math/matrix.h"
 #include "neighbor.h"
 #include "update.h"
-#include "watch/mpm_point_energies.h"
+#include "watch/mpm_point_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,8 +53,6 @@ static int turn_of(tagint tag, int bits)
   return (int) ((uint64_t) (uint32_t) (number * UINT32_C(2654435769)) >> (32 - bits));
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMEnergyWatch::step()
 {
   const bool centers = strain_follows();
@@ -70,17 +68,10 @@ void MPMEnergyWatch::step()
   note_points(parts[1], met, atom->nlocal);
 }
 
-/* ----------------------------------------------------------------------
-   Work of forces in this step, at the mean of the velocities of nodes before and after it, to which
-   these forces have led: that is the way that points went, less half of what the step has changed.
-   Points' own velocities would do where forces belong to masses, as gravity does. Those of flip and
-   aflip differ from point to point from what moves them, however, and a load on the last layers of
-   a body does no work on the difference. With the velocities before the step alone, a load of N
-   steps would have 1/N too little work. To take all points in some steps costs the same, but is
-   wrong where a body of a few cells vibrates: its period is a few of these steps. Forces that
-   elements have added are internal
-------------------------------------------------------------------------- */
-
+/** Work of forces in this step, at the mean of the velocities of nodes before and after it: that is
+ *  the way that points went, less half of what the step has changed. Points' own velocities would
+ *  not do: those of flip and aflip differ from what moves points. Forces that elements have added
+ *  are internal. */
 void MPMEnergyWatch::moved()
 {
   const double half = 0.5 * fields[0]->step_dt();
@@ -166,8 +157,6 @@ void MPMEnergyWatch::choose_turns(const Sums &now)
   }
 }
 
-/* ---------------------------------------------------------------------- */
-
 MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
 {
   const MPMPointEnergies points = point_energies(lmp);
@@ -203,18 +192,10 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
   return all;
 }
 
-/* ---------------------------------------------------------------------- */
-
-/* ----------------------------------------------------------------------
-   Velocities that steps have led to belong to the middle of the last step, as their work does, see
-   moved(). With usl and musl stored energy belongs to its end, where points are, and their sum
-   would vary with each vibration by omega dt of its energy: by 4 % for a block of 4 by 6 cells. The
-   mean of stored energies before and after the step belongs to its middle, and with it the sum is
-   that of a leapfrog, which is constant: with forces f and ways s of steps, half of the sum of f_k
-   (s_k + s_k+1) is half of that of (f_k-1 + f_k) s_k, but for its ends. With usf stress is a step
-   behind, with usavg in the middle
-------------------------------------------------------------------------- */
-
+/** Velocities, and work, belong to the middle of the last step, see moved(). With usl and musl
+ *  stored energy belongs to its end: the mean of stored energies before and after the step belongs
+ *  to its middle, and with it the sum is that of a leapfrog, which is constant. With usf stress is
+ *  a step behind, with usavg in the middle. */
 bool MPMEnergyWatch::strain_follows() const
 {
   return std::none_of(fields.begin(), fields.end(), [](const MPMField *field) {
@@ -229,10 +210,8 @@ bool MPMEnergyWatch::is_last_step() const
 }
 
 /** A run may begin in the middle of a vibration: the step before it had about as much as the first
- *  one, in proportion to the velocities. What was at rest is strained by a first step that has a
- *  jump of strain or load, and was not before. Bodies that start with velocities and without strain
- *  are in the middle of their vibration, where stored energy is least: it was as much a step before
- *  as it is a step later. */
+ *  one, in proportion to the velocities. Bodies that start with velocities and without strain have
+ *  least stored energy: as much a step before as a step later. */
 void MPMEnergyWatch::center_start()
 {
   const Sums now = sums();
@@ -243,8 +222,6 @@ void MPMEnergyWatch::center_start()
   run.start.stored -= change;
   run.lowest -= change;
 }
-
-/* ---------------------------------------------------------------------- */
 
 void MPMEnergyWatch::begin(const Sums &now)
 {
@@ -263,11 +240,8 @@ bool MPMEnergyWatch::is_round_off(double energy) const
   return energy < ROUND_OFF * sqrt((double) run.steps + 1.0) * all;
 }
 
-/* ----------------------------------------------------------------------
-   points that other commands have added or removed bring or take energy that is in no account; that
-   of points which fixes of this package emit and absorb is in the ledger
-------------------------------------------------------------------------- */
-
+/** Points that other commands have added or removed bring or take energy that is in no account;
+ *  that of points which fixes of this package emit and absorb is in the ledger. */
 void MPMEnergyWatch::check()
 {
   const Sums now = sums();
@@ -298,15 +272,13 @@ void MPMEnergyWatch::check()
     error->warning(FLERR, "{}; fix mpm ... gain sets what is done, and from which share on", text);
 }
 
-/* ---------------------------------------------------------------------- */
-
 std::string MPMEnergyWatch::report() const
 {
   if (run.steps < SHORTEST) return "";
   const double took = run.start.unexplained() - run.lowest;
-  return fmt::format("  energy {}at the end: kinetic {:.6g}, stored {:.6g}; since the start "
-                     "transfers and friction took {:.3g} ({:.3g} % of the energy in play), and "
-                     "numerical errors added {:.3g}\n",
-                     fields.size() > 1 ? "of all fields " : "", run.last.kinetic, run.last.stored,
-                     took, run.in_play > 0.0 ? 100.0 * took / run.in_play : 0.0, run.gained);
+  return fmt::format(
+      "  energy {}at the end: kinetic {:.6g}, stored {:.6g}; since the start transfers and "
+      "friction took {:.3g} ({:.3g} % of the energy in play), and numerical errors added {:.3g}\n",
+      fields.size() > 1 ? "of all fields " : "", run.last.kinetic, run.last.stored, took,
+      run.in_play > 0.0 ? 100.0 * took / run.in_play : 0.0, run.gained);
 }

@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_ENERGY_WATCH_H
 #define LMP_MPM_ENERGY_WATCH_H
 
-#include "field/mpm_watch.h"
+#include "field/mpm_interfaces.h"
 #include "pointers.h"
 
 #include <string>

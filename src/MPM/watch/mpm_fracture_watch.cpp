@@ -39,18 +39,13 @@ static double limit(Shape shape)
   return shape == QUADRATIC ? 1.2 : shape == CUBIC ? 1.15 : 1.0;
 }
 
-/* ---------------------------------------------------------------------- */
-
 void MPMFractureWatch::step()
 {
   if (++steps % LOOK_EVERY == 0) look();
 }
 
-/* ----------------------------------------------------------------------
-   Points are as far apart as the undeformed edges of a point, with F. What has no neighbor in this
-   direction is found, too, but is not stretched
-------------------------------------------------------------------------- */
-
+/** Points are as far apart as the undeformed edges of a point, with F. What has no neighbor in this
+ *  direction is found, too, but is not stretched. */
 void MPMFractureWatch::look()
 {
   if (warned) return;

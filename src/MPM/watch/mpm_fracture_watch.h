@@ -9,7 +9,7 @@
 #ifndef LMP_MPM_FRACTURE_WATCH_H
 #define LMP_MPM_FRACTURE_WATCH_H
 
-#include "field/mpm_watch.h"
+#include "field/mpm_interfaces.h"
 #include "pointers.h"
 
 namespace LAMMPS_NS {

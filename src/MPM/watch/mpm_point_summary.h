@@ -6,8 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_POINT_ENERGIES_H
-#define LMP_MPM_POINT_ENERGIES_H
+#ifndef LMP_MPM_POINT_SUMMARY_H
+#define LMP_MPM_POINT_SUMMARY_H
+
+#include <string>
 
 namespace LAMMPS_NS {
 
@@ -29,6 +31,11 @@ struct MPMPointEnergies {
 
 /** Energies of the points of all fields at present. */
 MPMPointEnergies point_energies(class LAMMPS *lmp);
+
+/** Part of the summary of a run: the time step as a fraction of the largest stable one, and a line
+ *  with the smallest and largest volume ratio det F and the largest speed of the points of a field,
+ *  with the IDs of these points. Collective. */
+std::string point_extremes(class LAMMPS *lmp, const class MPMField &field);
 
 }    // namespace LAMMPS_NS
 #endif
