@@ -64,8 +64,8 @@ class MPMStepMotion {
   bool impacts = false;                   // walls separate, or have friction
   std::vector<double> mapped;             // accelerations that points bring to nodes
   std::vector<double> ending, stopped;    // velocities at the end, before and after walls
-  /** Is friction part of the accelerations at both ends? In the first step the friction at its start
-   *  is unknown. */
+  /** Is friction part of the accelerations at both ends? In the first step the friction at its
+   *  start is unknown. */
   bool accelerates_by_friction() const
   {
     return impacts && time.keeps_acceleration() && kept.known;
