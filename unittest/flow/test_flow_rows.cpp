@@ -12,7 +12,6 @@
 #include "flow/mpm_flow_lattice.h"
 #include "flow/mpm_flow_poisson.h"
 #include "flow/mpm_flow_rows.h"
-#include "flow/mpm_flow_spread.h"
 
 #include "comm.h"
 

@@ -7,7 +7,7 @@
 // iterations from theory.
 
 #include "small_systems.h"
-#include "solve/flexible_gmres.h"
+#include "solve/krylov.h"
 
 #include "gtest/gtest.h"
 

@@ -67,7 +67,7 @@ TEST(BlockRows, AreThoseOfTheMatrix)
   for (int row = 0; row < ROWS; row++) {
     P.parts.push_back({row / 3, 0.75});
     if (row % 2) P.parts.push_back({(row / 3 + 2) % NEXT, 0.25});
-    P.end_function();
+    P.end_row();
   }
   for (const int width : {1, 2, 3})
     for (const auto &first : {std::vector<int>{0, 13}, {0, 6, 13}, {0, 5, 5, 13}}) {

@@ -10,7 +10,6 @@
 #define LMP_MPM_DIFFUSION_SOLVER_H
 
 #include "field/mpm_node_system.h"
-#include "solve/flexible_gmres.h"
 #include "solve/krylov.h"
 #include "solve/linear_system.h"
 #include "solve/spline_multigrid.h"

@@ -11,7 +11,6 @@
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "field/mpm_setup_checks.h"
-#include "flow/mpm_flow.h"
 #include "flow/mpm_flow_transfer.h"
 
 #include "atom.h"
@@ -28,7 +27,6 @@
 #include <vector>
 
 using namespace LAMMPS_NS;
-using namespace FixConst;
 
 // entries of the vector with gas; entries about parts of steps, at its end
 static constexpr int GAS_VALUES = 5, PART_VALUES = 2;
@@ -70,13 +68,6 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   keep_arrays();
 }
 
-FixMPMIncompressible::~FixMPMIncompressible() = default;
-
-int FixMPMIncompressible::setmask()
-{
-  return INITIAL_INTEGRATE | PRE_EXCHANGE | PRE_NEIGHBOR | PRE_FORCE;
-}
-
 /* ---------------------------------------------------------------------- */
 
 void FixMPMIncompressible::init()
@@ -103,22 +94,12 @@ void FixMPMIncompressible::init()
   atom->sortfreq = 0;
 }
 
-void FixMPMIncompressible::setup_pre_exchange()
-{
-  flow->checks.check_box();
-}
-
 void FixMPMIncompressible::setup_pre_neighbor()
 {
   flow->checks.check_points();
   refuse_other_integrators(lmp, *this);
   flow->checks.check_others();
   pre_neighbor();
-}
-
-void FixMPMIncompressible::setup(int)
-{
-  flow->start();
 }
 
 /* ----------------------------------------------------------------------
@@ -130,11 +111,6 @@ void FixMPMIncompressible::pre_neighbor()
 {
   flow->parts.cells.sort();
   travel = 0.0;
-}
-
-void FixMPMIncompressible::setup_pre_force(int vflag)
-{
-  pre_force(vflag);
 }
 
 /** LAMMPS has set to zero only the forces of atoms in the neighbor lists (neigh_modify include),
@@ -177,21 +153,6 @@ double FixMPMIncompressible::spacing_around(const std::string &region) const
       : 0.0;
 }
 
-double FixMPMIncompressible::spacing() const
-{
-  return flow->options.h;
-}
-
-double FixMPMIncompressible::density_of_groups(int mask) const
-{
-  return flow->liquids.density(mask);
-}
-
-double FixMPMIncompressible::stable_dt(tagint &tag) const
-{
-  return flow->stable_dt(tag);
-}
-
 /* ----------------------------------------------------------------------
    scalar: number of iterations; vector: this number, what is left of the divergence (relative),
    largest |div v|, volume that points fill, number of wet cells, kinetic energy, largest speed,
@@ -199,11 +160,6 @@ double FixMPMIncompressible::stable_dt(tagint &tag) const
    that spreading has added; with gas: number of pockets that have some, highest and lowest
    pressure, volume, and energy; parts of the last step, and halvings so far
 ------------------------------------------------------------------------- */
-
-double FixMPMIncompressible::compute_scalar()
-{
-  return flow->results.iterations;
-}
 
 double FixMPMIncompressible::compute_vector(int k)
 {
@@ -255,14 +211,4 @@ void FixMPMIncompressible::write_restart(FILE *fp)
   const int size = data.size() * sizeof(double);
   fwrite(&size, sizeof(int), 1, fp);
   fwrite(data.data(), size, 1, fp);
-}
-
-void FixMPMIncompressible::restart(char *buf)
-{
-  flow->restart((const double *) buf);
-}
-
-double FixMPMIncompressible::memory_usage()
-{
-  return FixMPMState::memory_usage() + flow->memory_usage();
 }

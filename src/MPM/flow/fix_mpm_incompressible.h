@@ -19,12 +19,12 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 #include "base/mpm_step_limit.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_point_batches.h"
+#include "flow/mpm_flow.h"
 
 #include <memory>
 #include <string>
 
 namespace LAMMPS_NS {
-class MPMFlow;
 
 /** Flow of an incompressible fluid with free surfaces (MPMFlow): options, calls by LAMMPS, and
  *  output. */
@@ -35,31 +35,34 @@ class FixMPMIncompressible :
     public MPMPointOwner {
  public:
   FixMPMIncompressible(class LAMMPS *, int, char **);
-  ~FixMPMIncompressible() override;
-  int setmask() override;
+  int setmask() override
+  {
+    return FixConst::INITIAL_INTEGRATE | FixConst::PRE_EXCHANGE | FixConst::PRE_NEIGHBOR |
+        FixConst::PRE_FORCE;
+  }
   void init() override;
-  void setup_pre_exchange() override;
+  void setup_pre_exchange() override { flow->checks.check_box(); }
   void setup_pre_neighbor() override;
-  void setup(int) override;
+  void setup(int) override { flow->start(); }
   void initial_integrate(int) override;
   void pre_neighbor() override;
-  void setup_pre_force(int) override;
+  void setup_pre_force(int vflag) override { pre_force(vflag); }
   void pre_force(int) override;
-  double compute_scalar() override;
+  double compute_scalar() override { return flow->results.iterations; }
   double compute_vector(int) override;
-  double memory_usage() override;
+  double memory_usage() override { return FixMPMState::memory_usage() + flow->memory_usage(); }
   void write_restart(FILE *) override;
-  void restart(char *) override;
+  void restart(char *buf) override { flow->restart((const double *) buf); }
 
   /** Stable time step of this rank: the time in which a point passes one node spacing with its
    *  present velocity and acceleration, or a moving region or wall passes one, or the limit of
    *  explicit viscosity, of solids, or of surface tension. tag: of the limiting point; 0: another
    *  limit. */
-  double stable_dt(tagint &tag) const override;
+  double stable_dt(tagint &tag) const override { return flow->stable_dt(tag); }
   double spacing_around(const std::string &region) const override;
-  double spacing() const override;
+  double spacing() const override { return flow->options.h; }
   void visit_batches(int group_bits, const BatchVisitor &) override;
-  double density_of_groups(int mask) const override;
+  double density_of_groups(int mask) const override { return flow->liquids.density(mask); }
   void check_density(double fluid, const std::string &who) const override;
 
  private:

@@ -554,8 +554,3 @@ void MPMFlow::restart(const double *from)
                "spacing: use the same one",
                who);
 }
-
-double MPMFlow::memory_usage() const
-{
-  return parts.memory_usage() + fields.memory_usage() + momentum.memory_usage();
-}

@@ -65,7 +65,10 @@ class MPMFlow : protected Pointers {
   std::vector<double> restart_data() const;
   /** Takes what restart_data() has given. */
   void restart(const double *from);
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return parts.memory_usage() + fields.memory_usage() + momentum.memory_usage();
+  }
 
  private:
   const int groupbit;

@@ -23,11 +23,7 @@ void MPMFlowBodies::init()
 {
   bodies.clear();
   for (int wall = 0; wall < regions.n(); wall++)
-    if (auto *fix = regions.body(wall)) {
-      bodies.emplace_back();
-      bodies.back().fix = fix;
-      bodies.back().wall = wall;
-    }
+    if (auto *fix = regions.body(wall)) bodies.push_back({fix, wall, {}, {}, {}, {}});
 }
 
 void MPMFlowBodies::find_rows(Body &body, const MPMFlowPressure &pressure) const

@@ -43,7 +43,6 @@ MPMFlowGrains::MPMFlowGrains(LAMMPS *lmp, MPMFlowLattice &cells, const std::stri
   }
 }
 
-/** Lists grains in the order of tags, so that sums do not depend on the order of atoms. */
 void MPMFlowGrains::list()
 {
   std::vector<std::pair<tagint, std::pair<int, int>>> all;
@@ -130,14 +129,11 @@ template <int dim> struct Splines {
   }
   template <class F> void visit(const F &f) const
   {
-    int k[3] = {0, 0, 0};
-    for (k[0] = 0; k[0] < 3; k[0]++)
-      for (k[1] = 0; k[1] < 3; k[1]++)
-        for (k[2] = 0; k[2] < (dim == 3 ? 3 : 1); k[2]++) {
-          double weight = 1.0;
-          for (int d = 0; d < dim; d++) weight *= share[d][k[d]];
-          f(reach.number(k), weight, k);
-        }
+    for_each_index<dim>({3, 3, 3}, [&](const int *k) {
+      double weight = 1.0;
+      for (int d = 0; d < dim; d++) weight *= share[d][k[d]];
+      f(reach.number(k), weight, k);
+    });
   }
 };
 }    // namespace
@@ -317,11 +313,4 @@ double MPMFlowGrains::at_wall(int axis, int side, const std::vector<double> &bef
       all -= 0.5 * on_grains(side ? cell.number : upper);
   }
   return side ? -all : all;
-}
-
-double MPMFlowGrains::memory_usage() const
-{
-  return (filled.capacity() + solid.capacity() + sums.capacity() + face_mobility.capacity()) *
-      sizeof(double) +
-      grains.capacity() * sizeof(Grain) + kind_of.capacity() * sizeof(int);
 }

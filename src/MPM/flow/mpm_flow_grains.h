@@ -42,8 +42,8 @@ class MPMFlowGrains : protected Pointers {
   /** flow: ID of the fix of the fluid; density: of the fluid. */
   MPMFlowGrains(class LAMMPS *, MPMFlowLattice &, const std::string &flow, double density);
   bool any() const { return !fixes.empty(); }
-  /** Lists the grains of this rank, around which cells are needed. To be called before cells are
-   *  found. */
+  /** Lists the grains of this rank, around which cells are needed, in the order of tags, so that
+   *  sums do not depend on the order of atoms. To be called before cells are found. */
   void list();
   /** Start of a step. sums: of give_to_cells(). share: [cell] share that is filled. before:
    *  [cell][dim] velocities at the start of the step. velocity: the same after viscosity and other
@@ -63,7 +63,10 @@ class MPMFlowGrains : protected Pointers {
   double at_wall(int axis, int side, const std::vector<double> &before,
                  const std::vector<double> &velocity) const;
 
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(filled, solid, sums, face_mobility, grains, kind_of);
+  }
 
  private:
   struct Kind {

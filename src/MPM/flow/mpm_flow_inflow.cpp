@@ -28,12 +28,11 @@ using namespace MPM_NS;
 static constexpr double AT_FACE = 1.0e-6;
 // least component of the direction of a flow that counts as along an axis of the lattice
 static constexpr double ALONG = 1.0 - 1.0e-9;
-
 // differences of shares of faces, and of squares of distances in spacings, that count as none;
 // relative difference of velocities in inlets that is small
 static constexpr double ALIKE = 1.0e-6, LIKE_POINTS = 0.05;
-// least open part of a face over the share of a section in it: that
-// of a corner into which columns of points just fit
+// least open part of a face over the share of a section in it: that of a corner into which columns
+// of points just fit
 static constexpr double LEAST_OPEN = 0.25;
 
 MPMFlowInflow::MPMFlowInflow(LAMMPS *lmp, const MPMFlowLattice &cells, int groupbit) :
@@ -100,19 +99,18 @@ void MPMFlowInflow::round_off(Inlet &one) const
   auto &section = one.section;
   double all = 0.0;
   for (const auto &part : section) all += part.share;
-  const auto away =
-      [&](const Section &part) {    // from the middle of the inlet, in spacings, squared
-        double sum = 0.0;
-        for (int d = 0, k = 0; d < cells.lattice.dim; d++) {
-          if (d == one.axis) continue;
-          const double middle = one.fix->shape().middle()[d];
-          const double x = part.index[k++] + 0.5 -
-              (middle - cells.lattice.origin[d]) / cells.lattice.h,
-                       around = cells.lattice.periodic[d] ? cells.lattice.ncell[d] : 0.0;
-          sum += around > 0.0 ? std::pow(std::remainder(x, around), 2) : x * x;
-        }
-        return sum;
-      };
+  // square of the distance from the middle of the inlet, in spacings
+  const auto away = [&](const Section &part) {
+    double sum = 0.0;
+    for (int d = 0, k = 0; d < cells.lattice.dim; d++) {
+      if (d == one.axis) continue;
+      const double middle = one.fix->shape().middle()[d];
+      const double x = part.index[k++] + 0.5 - (middle - cells.lattice.origin[d]) / cells.lattice.h,
+                   around = cells.lattice.periodic[d] ? cells.lattice.ncell[d] : 0.0;
+      sum += around > 0.0 ? std::pow(std::remainder(x, around), 2) : x * x;
+    }
+    return sum;
+  };
   std::vector<std::array<double, 3>> order;    // largest shares first, then the nearest ones
   for (std::size_t k = 0; k < section.size(); k++)
     order.push_back(
@@ -147,9 +145,8 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
     const double v = one.velocity[one.axis];
     const int upstream = one.side ? one.first - 1 : one.last;    // the cell
     const auto visit = [&](int at, const Section &part, const auto &set) {
-      int index[3] = {0, 0, 0};
-      for (int d = 0, k = 0; d < dim; d++)
-        index[d] = d == one.axis ? cells.lattice.wrap(d, at) : part.index[k++];
+      int index[3];
+      find_index(one, at, part, index);
       const int64_t number = cells.grid.locate(index);
       if (number >= 0) set(number);
     };
@@ -163,8 +160,8 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
       visit(upstream, part, [&](int64_t number) {
         source[number] += part.share * std::fabs(v) / h;
       });
-      const int before =
-          one.side ? 1 : 0;    // cells from the upstream one to the one before the last face
+      // cells from the upstream one to the one before the last face
+      const int before = one.side ? 1 : 0;
       for (int at = one.first - before; clamps && at <= one.last - before; at++)
         clamp(one, at, part);
     }
@@ -172,13 +169,19 @@ void MPMFlowInflow::find(const MPMFlowRegions *regions)
   found = true;
 }
 
+/** Index of the cell of a section that is at this place along the axis. */
+void MPMFlowInflow::find_index(const Inlet &inlet, int at, const Section &part, int *index) const
+{
+  std::fill_n(index, 3, 0);
+  for (int d = 0, k = 0; d < cells.lattice.dim; d++)
+    index[d] = d == inlet.axis ? cells.lattice.wrap(d, at) : part.index[k++];
+}
 /** Holds all faces of a cell that are along an inlet. */
 void MPMFlowInflow::clamp(const Inlet &inlet, int at, const Section &part)
 {
   const int dim = cells.lattice.dim;
-  int index[3] = {0, 0, 0};
-  for (int d = 0, k = 0; d < dim; d++)
-    index[d] = d == inlet.axis ? cells.lattice.wrap(d, at) : part.index[k++];
+  int index[3];
+  find_index(inlet, at, part, index);
   for (int d = 0; d < dim; d++)
     for (int s = 0; d != inlet.axis && s < 2; s++) {
       int next[3] = {index[0], index[1], index[2]};
@@ -214,9 +217,4 @@ bool MPMFlowInflow::carry(double *x, double *v, double dt) const
     return true;
   }
   return false;
-}
-
-double MPMFlowInflow::memory_usage() const
-{
-  return held.capacity() * sizeof(Held) + source.capacity() * sizeof(double);
 }

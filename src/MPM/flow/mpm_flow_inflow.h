@@ -47,7 +47,7 @@ class MPMFlowInflow : protected Pointers {
   /** Moves a point in an inlet by a step, and sets its velocity; returns false if it is in none. */
   bool carry(double *x, double *v, double dt) const;
 
-  double memory_usage() const;
+  double memory_usage() const { return MPM_NS::bytes_of(held, source); }
 
  private:
   struct Section {
@@ -73,6 +73,7 @@ class MPMFlowInflow : protected Pointers {
 
   void find_section(Inlet &) const;
   void round_off(Inlet &) const;
+  void find_index(const Inlet &, int at, const Section &, int *index) const;
   void clamp(const Inlet &, int at, const Section &);
 };
 

@@ -15,7 +15,6 @@
 #include "field/mpm_point_map.h"
 
 #include <algorithm>
-#include <array>
 #include <climits>
 #include <cmath>
 #include <cstdlib>
@@ -78,6 +77,10 @@ void MPMFlowLattice::base_of(const double *x, int base[3]) const
     base[d] = (int) std::floor(t);
   }
 }
+std::array<int, 3> MPMFlowLattice::block_of(const int base[3]) const
+{
+  return {base[0] >> grid.shift_bits, base[1] >> grid.shift_bits, base[2] >> grid.shift_bits};
+}
 
 /* ---------------------------------------------------------------------- */
 
@@ -92,8 +95,7 @@ void MPMFlowLattice::sort()
     if (!is_point(i)) continue;
     int base[3];
     base_of(atom->x[i], base);
-    const std::array<int, 3> b = {base[0] >> grid.shift_bits, base[1] >> grid.shift_bits,
-                                  base[2] >> grid.shift_bits};
+    const auto b = block_of(base);
     if (b != last) {
       index = blocks.emplace(b, (int) blocks.size()).first->second;
       last = b;
@@ -127,8 +129,7 @@ void MPMFlowLattice::find_cells()
     if (!is_point(i)) continue;
     int base[3];
     base_of(atom->x[i], base);
-    const std::array<int, 3> b = {base[0] >> grid.shift_bits, base[1] >> grid.shift_bits,
-                                  base[2] >> grid.shift_bits};
+    const auto b = block_of(base);
     if (b == last && runs.back().last == i) {
       runs.back().last++;
     } else {
@@ -246,7 +247,6 @@ int MPMFlowLattice::find_block(const double *x, int base[3]) const
   return number < 0 ? -1 : (int) (number / NODES_PER_BLOCK);
 }
 
-/** Number of a cell, or of the cell of which it is a periodic image; the block must exist. */
 int MPMFlowLattice::canonical(const int index[3]) const
 {
   int wrapped[3] = {0, 0, 0};
@@ -436,10 +436,57 @@ void MPMFlowLattice::reflect_cells(double *values) const
 
 double MPMFlowLattice::memory_usage() const
 {
-  return grid.memory_usage() + halo.memory_usage() + runs.capacity() * sizeof(Run) +
-      kept.capacity() * sizeof(double) + cells.capacity() * sizeof(Cell) +
-      around.capacity() * sizeof(int) +
-      (ranges.capacity() + visitor_ranges.capacity()) * sizeof(Range) +
-      visitors.capacity() * sizeof(int) + images.capacity() * sizeof(Image) +
-      at_walls.capacity() * sizeof(AtWall);
+  return grid.memory_usage() + halo.memory_usage() +
+      bytes_of(runs, kept, cells, around, ranges, visitor_ranges, visitors, images, at_walls);
+}
+
+/* ----------------------------------------------------------------------
+   Velocities and flags go in one message, [cell][velocity, known]. A layer is added to the faces
+   that are still unknown, which are few, once all of it is found.
+------------------------------------------------------------------------- */
+
+void MPMFlowAir::extend(std::vector<double> &velocity, std::vector<double> &known)
+{
+  const int dim = cells.lattice.dim, width = 2 * dim;
+  unknown.clear();
+  for (int k = 0; k < (int) cells.cells.size(); k++)
+    for (int c = 0; c < dim; c++)
+      if (!(known[(int64_t) cells.cells[k].number * dim + c] > 0.0)) unknown.push_back({k, c});
+  all.resize(velocity.size() * 2);
+  for (int64_t k = 0; k < cells.size(); k++)
+    for (int c = 0; c < dim; c++) {
+      all[k * width + c] = velocity[k * dim + c];
+      all[k * width + dim + c] = known[k * dim + c];
+    }
+  cells.publish(all.data(), width);
+  for (int layer = 0; layer < LAYERS; layer++) {
+    found.clear();
+    std::size_t left = 0;
+    for (const auto &face : unknown) {
+      const auto &cell = cells.cells[face.cell];
+      double sum = 0.0, n = 0.0;
+      for (int s = 0; s < 2 * dim; s++) {
+        // nothing is beyond a wall, and the face in the wall itself does not count
+        if (cell.walls >> s & 1) continue;
+        const double *const other = &all[(int64_t) cell.near[s] * width + face.axis];
+        sum += other[dim] * other[0];
+        n += other[dim];
+      }
+      if (n == 0.0)
+        unknown[left++] = face;
+      else
+        found.push_back({(int64_t) cell.number * width + face.axis, sum / n});
+    }
+    unknown.resize(left);
+    for (const auto &[place, value] : found) {
+      all[place] = value;
+      all[place + dim] = 1.0;
+    }
+    cells.renew(all.data(), width);
+  }
+  for (int64_t k = 0; k < cells.size(); k++)
+    for (int c = 0; c < dim; c++) {
+      velocity[k * dim + c] = all[k * width + c];
+      known[k * dim + c] = all[k * width + dim + c];
+    }
 }

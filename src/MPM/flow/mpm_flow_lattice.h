@@ -12,7 +12,9 @@
 #include "field/mpm_halo.h"
 #include "lattice/grid.h"
 #include "pointers.h"
+#include "solve/bytes_of.h"
 
+#include <array>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -65,6 +67,8 @@ class MPMFlowLattice : protected Pointers {
   /** Number of spacings that points may move in a step. Half of it must be in reach of a rank
    *  before it moves them. */
   static constexpr double MOST_MOTION = 2.0;
+  /** Strides of the neighbors along each axis in around, by dimension. */
+  static constexpr int STRIDE[2][3] = {{3, 1, 0}, {9, 3, 1}};
 
   /** groupbit: of the group of the points. */
   MPMFlowLattice(class LAMMPS *, const MPM_NS::Lattice &, int groupbit);
@@ -172,9 +176,38 @@ class MPMFlowLattice : protected Pointers {
   std::vector<int> borrowed;    // cells of other ranks that this rank has, too
 
   void base_of(const double *x, int base[3]) const;
+  std::array<int, 3> block_of(const int base[3]) const;
   int rank_around(int number) const;
   void list_cells();
   void list_images();
+};
+/** Extends the velocities of the water to faces in the air that points near the surface reach:
+ *  layer by layer, as means of the known velocities around. */
+class MPMFlowAir {
+ public:
+  /** Layers of faces that a point just below the surface reaches, also from its place after half a
+   *  step. */
+  static constexpr int LAYERS = 3;
+
+  explicit MPMFlowAir(const MPMFlowLattice &cells) : cells(cells) {}
+
+  /** velocity, known (1 or 0): [cell][dim], of owned cells before and of all cells afterwards.
+   *  Collective. */
+  void extend(std::vector<double> &velocity, std::vector<double> &known);
+  double memory_usage() const { return MPM_NS::bytes_of(all, unknown, found); }
+
+ private:
+  struct Face {
+    int cell, axis;    // cell: place in the list of cells
+  };
+  struct Found {
+    int64_t place;    // in the array all
+    double value;
+  };
+  const MPMFlowLattice &cells;
+  std::vector<double> all;
+  std::vector<Face> unknown;
+  std::vector<Found> found;
 };
 
 }    // namespace LAMMPS_NS

@@ -48,7 +48,6 @@ const std::vector<double> *MPMFlowMomentum::surface_psi() const
   return parts.tension ? &at_surface : nullptr;
 }
 
-/** Force per mass by all fix gravity, in units of forces. */
 void MPMFlowMomentum::find_gravity(double *g) const
 {
   MathExtra::zero3(g);
@@ -119,8 +118,8 @@ SolveReport MPMFlowMomentum::solve_part(double duration)
     viscous = find_stress(duration, rounding);
     if (!viscous.converged()) return viscous;
   }
-  if (parts.inflow)
-    fields.predicted.swap(without_hold);    // next to inlets, held velocities do not fall, either
+  // next to inlets, held velocities do not fall, either
+  if (parts.inflow) fields.predicted.swap(without_hold);
   extend_into_air();
   if (parts.inflow) {
     parts.inflow->hold(fields.velocity, nullptr);
@@ -151,10 +150,10 @@ void MPMFlowMomentum::hold_and_resist(double duration)
 /** Magnitude of velocities that is rounding. */
 double MPMFlowMomentum::rounding() const
 {
-  double most[1] = {0.0}, most_all[1];
-  for (const double v : fields.predicted) most[0] = std::max(most[0], std::fabs(v));
-  MPI_Allreduce(most, most_all, 1, MPI_DOUBLE, MPI_MAX, world);
-  return ROUNDING * most_all[0] * std::sqrt((double) atom->natoms);
+  double mine = 0.0, most;
+  for (const double v : fields.predicted) mine = std::max(mine, std::fabs(v));
+  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, world);
+  return ROUNDING * most * std::sqrt((double) atom->natoms);
 }
 
 /** Velocities of faces without divergence, from those that are predicted, with tension, gas, and
@@ -307,8 +306,8 @@ void MPMFlowMomentum::find_forces_on_regions(double pressure_to_psi)
       [this](int64_t number) {
         return parts.pressure->is_wet(number);
       },
-      [&](const MPMFlowLattice::Cell &cell,
-          double *push) {    // change by forces, at the faces of the cell
+      // change by forces, at the faces of the cell
+      [&](const MPMFlowLattice::Cell &cell, double *push) {
         for (int c = 0; c < dim; c++) {
           double force_of_points = 0.0, mass = 0.0;
           for (const int64_t k : {(int64_t) cell.number, (int64_t) cell.near[2 * c + 1]}) {
@@ -375,13 +374,4 @@ void MPMFlowMomentum::check_inflow() const
                "{}: at step {} there is no room for what fix mpm/emit brings: leave a free "
                "surface, or let fix mpm/absorb take as much away",
                who, update->ntimestep);
-}
-
-double MPMFlowMomentum::memory_usage() const
-{
-  double bytes = 0.0;
-  for (const auto *list : {&at_surface, &before_forces, &without_hold, &start_of_part,
-                           &viscous_velocity, &mobility, &potentials, &psi_of_parts})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
 }

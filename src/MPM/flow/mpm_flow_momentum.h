@@ -35,7 +35,11 @@ class MPMFlowMomentum : protected Pointers {
   /** [cell][dim] share of the gradient of the pressure that changes the velocity of a face; with
    *  grains or inflow. */
   const std::vector<double> &mobilities() const { return mobility; }
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(at_surface, before_forces, without_hold, start_of_part,
+                            viscous_velocity, mobility, potentials, psi_of_parts);
+  }
 
  private:
   const MPMIncompressibleOptions &options;
@@ -49,8 +53,8 @@ class MPMFlowMomentum : protected Pointers {
   // stress
   std::vector<double> at_surface, before_forces, without_hold, start_of_part, viscous_velocity;
   std::vector<double> mobility;
-  std::vector<double> potentials,
-      psi_of_parts;    // [cell] psi before the viscous stress; sum over parts
+  // [cell] psi before the viscous stress; sum over parts
+  std::vector<double> potentials, psi_of_parts;
 
   MPM_NS::SolveReport solve_part(double duration);
   MPM_NS::SolveReport project(double duration, double rounding);

@@ -8,6 +8,10 @@
 
 #include "flow/mpm_flow_options.h"
 
+#include "error.h"
+#include "force.h"
+#include "group.h"
+
 #include <algorithm>
 
 using namespace LAMMPS_NS;
@@ -144,7 +148,6 @@ Options MPMIncompressibleOptions::declare(int dim)
       })
       .once()
       .standard("pressure of *gas*");
-  std::vector<OptionWord> open_faces = faces;
   o.add("open",
         {word(
             [this] {
@@ -153,7 +156,7 @@ Options MPMIncompressibleOptions::declare(int dim)
             [this](int k) {
               open_face = k;
             },
-            open_faces)},
+            faces)},
         "face next to which air is open; can be given more than once")
       .then([this] {
         open[open_face / 2][open_face % 2] = has_open = true;
@@ -189,20 +192,18 @@ Options MPMIncompressibleOptions::declare(int dim)
         {wall_is_twice, "wall", "has the same face twice: give each face once"},
         {is_viscous, "region",
          "has no friction, and cannot be used with viscosity: use the keyword stick instead, or "
-         "leave "
-         "viscosity out"},
+         "leave viscosity out"},
         {!implicit && parts_are_given, "parts",
          "is about implicit viscosity, as the other equations are those of any time step: add the "
          "keywords viscosity and implicit yes, or remove it"},
         {!implicit || !is_viscous, "stick",
          "is about viscosity, in an implicit step, as an explicit one would be bound by the least "
-         "distance of "
-         "a face to a wall: add the keywords viscosity and implicit yes, or use the keyword region "
-         "instead"},
+         "distance of a face to a wall: add the keywords viscosity and implicit yes, or use the "
+         "keyword region instead"},
         {tension > 0.0, "region",
          "cannot be used with tension, as a fluid that slips along it without friction never comes "
-         "to rest: use the keyword stick "
-         "with implicit viscosity instead, or walls of the box, or leave tension out"},
+         "to rest: use the keyword stick with implicit viscosity instead, or walls of the box, or "
+         "leave tension out"},
         {!liquids.empty() && tension > 0.0, "tension",
          "is that of one liquid, and cannot be used with liquid: leave one of them out"},
         {!solid_groups.empty() && tension > 0.0, "tension",
@@ -243,4 +244,45 @@ bool MPMIncompressibleOptions::has_several_viscosities() const
   return std::any_of(liquids.begin(), liquids.end(), [this](const Liquid &one) {
     return viscosity_of(one) != viscosity;
   });
+}
+/* ---------------------------------------------------------------------- */
+
+MPMFlowLiquids::MPMFlowLiquids(LAMMPS *lmp, const MPMIncompressibleOptions &options) :
+    Pointers(lmp), largest_viscosity(options.largest_viscosity()), least_density(options.density),
+    has_several_densities(!options.liquids.empty()), options(options)
+{
+  for (const auto &one : options.liquids) least_density = std::min(least_density, one.density);
+}
+
+void MPMFlowLiquids::find_groups()
+{
+  for (const auto &one : options.liquids) {
+    const int igroup = group->find(one.group);
+    if (igroup < 0)
+      error->all(FLERR, "Fix mpm/incompressible liquid: group {} does not exist", one.group);
+    bits.push_back(group->bitmask[igroup]);
+  }
+}
+
+double MPMFlowLiquids::density(int mask) const
+{
+  double density = options.density;
+  for (std::size_t k = 0; k < bits.size(); k++)
+    if (mask & bits[k]) density = options.liquids[k].density;
+  return density;
+}
+
+double MPMFlowLiquids::acceleration_per_stress() const
+{
+  return force->ftm2v / (force->nktv2p * options.density);
+}
+
+double MPMFlowLiquids::largest_kinematic_viscosity() const
+{
+  if (!options.has_several_viscosities())
+    return largest_viscosity * acceleration_per_stress() * options.density / least_density;
+  double most = options.viscosity / options.density;
+  for (const auto &one : options.liquids)
+    most = std::max(most, options.viscosity_of(one) / one.density);
+  return most * options.density * acceleration_per_stress();
 }

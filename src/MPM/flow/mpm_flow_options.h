@@ -12,6 +12,7 @@
 #include "declare/option.h"
 #include "flow/mpm_flow_gas.h"
 #include "flow/mpm_flow_lattice.h"
+#include "pointers.h"
 
 #include <string>
 #include <vector>
@@ -71,6 +72,31 @@ struct MPMIncompressibleOptions {
   Liquid liquid;
   std::string solid_group;
   int open_face = 0;
+};
+
+/** Densities and viscosities of the liquids of a flow, by groups of points. */
+class MPMFlowLiquids : protected Pointers {
+ public:
+  std::vector<int> bits;       ///< of the groups of keyword liquid
+  double largest_viscosity;    ///< dynamic viscosity
+  /** Relative difference of densities that counts as none. */
+  static constexpr double SAME_DENSITY = 1.0e-9;
+
+  double least_density;          ///< also of solids, once these are known
+  bool has_several_densities;    ///< also of solids, once these are known
+
+  MPMFlowLiquids(class LAMMPS *, const MPMIncompressibleOptions &);
+  /** Finds the groups. Stops with an error if one does not exist. */
+  void find_groups();
+  /** Density of points in groups with these bits, that are no solids. */
+  double density(int mask) const;
+  /** Largest kinematic viscosity [length^2/time], which limits explicit steps. */
+  double largest_kinematic_viscosity() const;
+  /** Factor from a stress to an acceleration times a length, with the density of the flow. */
+  double acceleration_per_stress() const;
+
+ private:
+  const MPMIncompressibleOptions &options;
 };
 
 }    // namespace LAMMPS_NS

@@ -9,7 +9,6 @@
 #include "flow/mpm_flow_parts.h"
 
 #include "flow/mpm_flow_fourier.h"
-#include "flow/mpm_flow_wetting.h"
 
 #include "atom.h"
 #include "domain.h"
@@ -108,8 +107,7 @@ void MPMFlowParts::check_walls(LAMMPS *lmp, const MPMIncompressibleOptions &opti
       if (options.walls[d][s].v[d] != 0.0)
         lmp->error->all(FLERR,
                         "Fix mpm/incompressible wall {} cannot move out of its plane: its velocity "
-                        "along {} must "
-                        "be zero",
+                        "along {} must be zero",
                         name, (char) ('x' + d));
     }
 }
@@ -202,28 +200,15 @@ void MPMFlowParts::init_bodies(LAMMPS *lmp, const MPMIncompressibleOptions &opti
 double MPMFlowParts::memory_usage() const
 {
   double bytes = cells.memory_usage() + pressure->memory_usage() + air->memory_usage();
-  const auto add = [&bytes](const auto &part) {
-    if (part) bytes += part->memory_usage();
+  const auto add = [&bytes](const auto &...part) {
+    ((bytes += part ? part->memory_usage() : 0.0), ...);
   };
-  add(regions);
-  add(stick);
-  add(grains);
-  add(inflow);
-  add(solids);
-  add(tension);
-  add(gas);
-  add(gas_rows);
-  add(stress);
-  add(viscosities);
+  add(regions, stick, grains, inflow, solids, tension, gas, gas_rows, stress, viscosities);
   return bytes;
 }
 
 double MPMFlowFields::memory_usage() const
 {
-  double bytes = 0.0;
-  for (const auto *list :
-       {&sums, &filled, &predicted, &initial, &velocity, &known, &change, &pressures, &shift,
-        &paths, &inverse_density, &face_volumes, &solid_forces})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return bytes_of(sums, filled, predicted, initial, velocity, known, change, pressures, shift,
+                  paths, inverse_density, face_volumes, solid_forces);
 }

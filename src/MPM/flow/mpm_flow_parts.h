@@ -9,13 +9,11 @@
 #ifndef LMP_MPM_FLOW_PARTS_H
 #define LMP_MPM_FLOW_PARTS_H
 
-#include "flow/mpm_flow_air.h"
 #include "flow/mpm_flow_bodies.h"
-#include "flow/mpm_flow_gas_rows.h"
+#include "flow/mpm_flow_gas.h"
 #include "flow/mpm_flow_grains.h"
 #include "flow/mpm_flow_inflow.h"
 #include "flow/mpm_flow_lattice.h"
-#include "flow/mpm_flow_liquids.h"
 #include "flow/mpm_flow_options.h"
 #include "flow/mpm_flow_pressure.h"
 #include "flow/mpm_flow_regions.h"
@@ -23,7 +21,6 @@
 #include "flow/mpm_flow_stick.h"
 #include "flow/mpm_flow_stress.h"
 #include "flow/mpm_flow_tension.h"
-#include "flow/mpm_flow_viscosities.h"
 #include "flow/mpm_flow_viscosity.h"
 
 #include <memory>

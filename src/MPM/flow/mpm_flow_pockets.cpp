@@ -272,13 +272,3 @@ bool MPMFlowPockets::set_runs(const double *from, std::size_t n)
   closed_before.clear();
   return true;
 }
-
-double MPMFlowPockets::memory_usage() const
-{
-  return (wet.capacity() + closed.capacity() + closed_before.capacity() + solid.capacity()) *
-      sizeof(uint64_t) +
-      volume_fractions.capacity() * sizeof(float) +
-      (stack.capacity() + cut.capacity()) * sizeof(int64_t) +
-      (labels.capacity() + labels_before.capacity() + pocket_of_cell.capacity()) * sizeof(int) +
-      infos.capacity() * sizeof(Info) + common_cells.capacity() * sizeof(Overlap);
-}

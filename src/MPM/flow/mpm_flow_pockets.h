@@ -62,7 +62,11 @@ class MPMFlowPockets : protected Pointers {
   /** Takes n reals of runs(); returns false if they belong to another lattice. */
   bool set_runs(const double *from, std::size_t n);
 
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(wet, closed, closed_before, solid, volume_fractions, stack, cut, labels,
+                            labels_before, pocket_of_cell, infos, common_cells);
+  }
 
  private:
   struct Info {

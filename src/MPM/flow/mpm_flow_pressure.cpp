@@ -9,7 +9,7 @@
 #include "flow/mpm_flow_pressure.h"
 
 #include "flow/mpm_flow_bodies.h"
-#include "flow/mpm_flow_gas_rows.h"
+#include "flow/mpm_flow_gas.h"
 #include "flow/mpm_flow_regions.h"
 
 #include "lammps.h"
@@ -45,14 +45,6 @@ double MPMFlowPressure::distance(int64_t wet_cell, int64_t dry) const
   if (!(filled[wet_cell] > HALF)) return 0.5;    // surrounded: the place of the surface is unknown
   const double in = depth(filled[wet_cell]), out = depth(filled[dry]);
   return std::max(nearest, in / (in - out));
-}
-
-/** Factor of the difference of psi, or of psi itself where the other cell is dry: 1/h^2 over the
- *  distance in spacings. */
-double MPMFlowPressure::weight_to(int64_t wet_cell, int64_t other) const
-{
-  const double h = cells.lattice.h;
-  return 1.0 / (h * h * (is_wet(other) ? 1.0 : distance(wet_cell, other)));
 }
 
 double MPMFlowPressure::aperture(int64_t cell, int axis) const
@@ -219,8 +211,8 @@ void MPMFlowPressure::find_levels()
   coefficients.clear();
   for (const auto &one : wet) {
     const int64_t number = cells.cells[one.cell].number;
-    double outside = 0.0,
-           inside = 0.0;    // summed apart: a closed pool has nothing outside, to the last digit
+    // summed apart: a closed pool has nothing outside, to the last digit
+    double outside = 0.0, inside = 0.0;
     for (int s = 0; s < 2 * dim; s++) {
       (one.near[s] < 0 ? outside : inside) += one.weight[s];
       if (s % 2 && one.near[s] >= 0) coefficients.face[number * dim + s / 2] = one.weight[s];
@@ -328,8 +320,8 @@ void MPMFlowPressure::find_lift(const std::vector<double> &surface)
     lift[number] = weight > 0.0 ? sum / weight : all[1] > 0.0 ? all[0] / all[1] : 0.0;
   }
   cells.publish(lift.data(), 1);
-  for (const auto &one :
-       wet) {    // at surfaces the terms of a cell add up to zero, by the choice of its lift
+  // at surfaces the terms of a cell add up to zero, by the choice of its lift
+  for (const auto &one : wet) {
     const int number = cells.cells[one.cell].number;
     for (int s = 0; s < 2 * dim; s++)
       if (one.near[s] >= 0)
@@ -440,8 +432,8 @@ void MPMFlowPressure::extend_into_air(std::vector<double> &values,
     for (int s = 0; s < 2 * cells.lattice.dim; s++) {
       const int other = cell.near[s];
       if (cell.walls >> s & 1 || !is_wet(other) || aperture_of_side(cell, s) == 0.0) continue;
-      const double in =
-          distance(other, cell.number);    // from the middle of the wet cell to the surface
+      // from the middle of the wet cell to the surface
+      const double in = distance(other, cell.number);
       const double at = surface ? (*surface)[(int64_t) (s % 2 ? other : cell.number) * dim + s / 2]
                                 : 0.0;
       sum += at + (psi[other] - at) * (in - 1.0) / in;
@@ -472,10 +464,8 @@ double MPMFlowPressure::at_wall(int axis, int side) const
 
 double MPMFlowPressure::memory_usage() const
 {
-  double reals = 0.0;
-  for (const auto *list : {&psi, &lift, &excess, &flag, &right_side, &solution, &diagonal, &weight})
-    reals += list->capacity();
-  return reals * sizeof(double) + wet.capacity() * sizeof(Wet) + method.memory_usage() +
-      coefficients.memory_usage() + rows.memory_usage() + poisson.memory_usage() +
-      (fourier ? fourier->memory_usage() : 0.0) + equal_filling.memory_usage();
+  return bytes_of(psi, lift, excess, flag, right_side, solution, diagonal, weight, wet) +
+      method.memory_usage() + coefficients.memory_usage() + rows.memory_usage() +
+      poisson.memory_usage() + (fourier ? fourier->memory_usage() : 0.0) +
+      equal_filling.memory_usage();
 }

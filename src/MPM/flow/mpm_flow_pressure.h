@@ -14,7 +14,6 @@
 #include "flow/mpm_flow_lattice.h"
 #include "flow/mpm_flow_poisson.h"
 #include "flow/mpm_flow_rows.h"
-#include "flow/mpm_flow_spread.h"
 #include "solve/cell_operator.h"
 #include "solve/krylov.h"
 
@@ -171,7 +170,13 @@ class MPMFlowPressure : protected Pointers {
   void weigh_rows(double screen, std::vector<double> &diagonal, std::vector<double> &weight) const;
   void to_cells(const std::vector<double> &row_values, std::vector<double> &cell_values) const;
   void find_lift(const std::vector<double> &surface);
-  double weight_to(int64_t wet_cell, int64_t other) const;
+  /** Factor of the difference of psi, or of psi itself where the other cell is dry: 1/h^2 over the
+   *  distance in spacings. */
+  double weight_to(int64_t wet_cell, int64_t other) const
+  {
+    const double h = cells.lattice.h;
+    return 1.0 / (h * h * (is_wet(other) ? 1.0 : distance(wet_cell, other)));
+  }
   double aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const;
   double outflow(const double *velocity, const MPMFlowLattice::Cell &) const;
   void subtract_gradient(const std::vector<double> &of, const double *before, double *after,

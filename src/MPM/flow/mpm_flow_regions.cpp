@@ -33,6 +33,8 @@ static constexpr double HELD = 3.5;
 static constexpr double NO_SHARE = 1.0e-9;
 // distance that points are kept outside of walls, in spacings
 static constexpr double MARGIN = 1.0e-6;
+// distance between two regions from which on there is a gap, in spacings
+static constexpr double LEAST_GAP = 0.05;
 
 /* ---------------------------------------------------------------------- */
 
@@ -127,8 +129,8 @@ void MPMFlowRegions::find(double duration)
     std::copy_n(wall.shift, 3, wall.last);
     std::copy_n(wall.spin, 3, wall.last + 3);
     std::copy_n(wall.center, 3, wall.last + 6);
-    if (!wall.has_last)
-      std::copy_n(wall.last, 9, wall.older);    // as if it had moved like that before
+    // as if it had moved like that before
+    if (!wall.has_last) std::copy_n(wall.last, 9, wall.older);
     wall.has_last = true;
   }
   find_apertures();
@@ -189,7 +191,7 @@ void MPMFlowRegions::face_middle(int64_t cell, int axis, double *x) const
   int index[3];
   double offset[3] = {0.5, 0.5, 0.5};
   offset[axis] = 0.0;
-  cells.grid.node_index(cells.grid.blocks[cell / NODES_PER_BLOCK], cell % NODES_PER_BLOCK, index);
+  cells.grid.node_index(cell, index);
   place(index, offset, x);
 }
 
@@ -213,7 +215,7 @@ double MPMFlowRegions::plane_at(int64_t cell, const double *offset, double far, 
 {
   int index[3];
   double x[3];
-  cells.grid.node_index(cells.grid.blocks[cell / NODES_PER_BLOCK], cell % NODES_PER_BLOCK, index);
+  cells.grid.node_index(cell, index);
   place(index, offset, x);
   const double level = distance(x, far, wall);
   if (std::fabs(level) < far) normal_at(wall, x, normal);
@@ -230,10 +232,9 @@ double MPMFlowRegions::velocity_at_face(int wall, int64_t cell, int axis) const
 
 double MPMFlowRegions::find_way_out(const MPMFlowLattice::Cell &cell, double *out) const
 {
-  constexpr double middle[3] = {0.5, 0.5, 0.5};
   double x[3];
   int wall;
-  place(cell.index, middle, x);
+  place(cell.index, MIDDLE, x);
   const double level = distance(x, FAR * cells.lattice.h, wall);
   normal_at(wall, x, out);
   return -level;
@@ -252,10 +253,9 @@ double MPMFlowRegions::closed_by(int wall, int64_t cell, int axis, double *arm) 
 
 void MPMFlowRegions::find_wall(int wall, const MPMFlowLattice::Cell &cell, double *way) const
 {
-  constexpr double middle[3] = {0.5, 0.5, 0.5};
   const double far = FAR * cells.lattice.h;
   double x[3], normal[3];
-  place(cell.index, middle, x);
+  place(cell.index, MIDDLE, x);
   normal_at(wall, x, normal);
   const double d = distance_from(walls[wall], x, far);
   for (int k = 0; k < 3; k++) way[k] = -d * normal[k];
@@ -305,13 +305,11 @@ void MPMFlowRegions::find_apertures()
   levels.assign(size, far);
   if (any_moves) fluxes.assign(size * dim, 0.0);
   if (any_bodies) body_faces.assign(size * dim, -1);
-  constexpr double middle[3] = {0.5, 0.5, 0.5};
   for (int64_t number = 0; number < size; number++) {
     int index[3];
     double x[3];
-    cells.grid.node_index(cells.grid.blocks[number / NODES_PER_BLOCK], number % NODES_PER_BLOCK,
-                          index);
-    place(index, middle, x);
+    cells.grid.node_index(number, index);
+    place(index, MIDDLE, x);
     const double level = levels[number] = distance(x, far, nearest);
     if (level > near) continue;
     if (level < -near) {
@@ -319,14 +317,9 @@ void MPMFlowRegions::find_apertures()
       std::fill_n(apertures.begin() + number * dim, dim, 0.0);
     } else {
       double corner[8], slope[3] = {0.0, 0.0, 0.0};
-      for (int k = 0; k < ncorner; k++) {
-        const double offset[3] = {(double) (k & 1), (double) (k >> 1 & 1), (double) (k >> 2 & 1)};
-        double y[3];
-        int any;
-        place(index, offset, y);
-        corner[k] = distance(y, far, any);
-        for (int d = 0; d < dim; d++) slope[d] += (2.0 * offset[d] - 1.0) * corner[k];
-      }
+      corner_levels(index, corner);
+      for (int k = 0; k < ncorner; k++)
+        for (int d = 0; d < dim; d++) slope[d] += (k >> d & 1 ? 1.0 : -1.0) * corner[k];
       for (int d = 0; d < dim; d++) {
         const int e = d == 0 ? 2 : 1, f = d == 2 ? 2 : 4;    // the other axes
         const double share = dim == 2
@@ -337,7 +330,6 @@ void MPMFlowRegions::find_apertures()
       }
 
       // the surroundings, with the plane that is nearest to these distances
-
       volume_fractions[number] = MPMFlowCutCell::positive_in_hat(dim, level, slope);
     }
     for (int d = 0; any_moves && d < dim; d++) {
@@ -384,8 +376,7 @@ void MPMFlowRegions::find_cuts()
     if (!warned_of_thin && std::fabs(levels[cell.number]) < 0.5 * h) ngaps += is_gap(cell);
     double x[3];
     if (!whole && most > 0.0) {
-      constexpr double middle[3] = {0.5, 0.5, 0.5};
-      place(cell.index, middle, x);
+      place(cell.index, MIDDLE, x);
       distance(x, far, cut.wall);
       find_moments(cut);
       find_change(cut, x);
@@ -412,6 +403,19 @@ void MPMFlowRegions::find_cuts()
   if (!warned_of_thin) warn_of_thin(nthin, ngaps);
 }
 
+/** Distances of the corners of a cell from walls; bit d of the number of a corner is its side along
+ *  an axis. */
+void MPMFlowRegions::corner_levels(const int *index, double *level) const
+{
+  for (int k = 0; k < 1 << dim; k++) {
+    const double offset[3] = {(double) (k & 1), (double) (k >> 1 & 1), (double) (k >> 2 & 1)};
+    double x[3];
+    int any;
+    place(index, offset, x);
+    level[k] = distance(x, FAR * cells.lattice.h, any);
+  }
+}
+
 /* ----------------------------------------------------------------------
    Integrals of the normal times the place over the part of a wall that is in a cell. They are the
    integrals over the whole surface of the open part, which are its volume, less those over the open
@@ -421,17 +425,10 @@ void MPMFlowRegions::find_cuts()
 void MPMFlowRegions::find_moments(Cut &cut) const
 {
   const auto &cell = cells.cells[cut.cell];
-  const double h = cells.lattice.h, far = FAR * h, volume = cells.lattice.cell_volume();
-  const int ncorner = 1 << dim;
-  double level[8],
-      face_areas[3][2][3] = {};    // [axis][side]: area, and moments along the other axes
-  for (int k = 0; k < ncorner; k++) {
-    const double offset[3] = {(double) (k & 1), (double) (k >> 1 & 1), (double) (k >> 2 & 1)};
-    double x[3];
-    int any;
-    place(cell.index, offset, x);
-    level[k] = distance(x, far, any);
-  }
+  const double h = cells.lattice.h, volume = cells.lattice.cell_volume();
+  double level[8];
+  double face_areas[3][2][3] = {};    // [axis][side]: area, and moments along the other axes
+  corner_levels(cell.index, level);
   double faces = 0.0, square = 0.0;
   for (int d = 0; d < dim; d++) {
     const int e = d == 0 ? 2 : 1, f = d == 2 ? 2 : 4;
@@ -446,8 +443,8 @@ void MPMFlowRegions::find_moments(Cut &cut) const
     }
     square += cut.area[d] * cut.area[d];
   }
-  const double open = (faces + levels[cell.number] / h * std::sqrt(square) * h / volume) /
-      dim;    // open share of the cell
+  // open share of the cell
+  const double open = (faces + levels[cell.number] / h * std::sqrt(square) * h / volume) / dim;
   for (int d = 0; d < dim; d++)
     for (int e = 0; e < dim; e++) {
       const int k = 1 + (e > (d == 0 ? 1 : 0));    // index of e among the axes other than d
@@ -516,11 +513,157 @@ double MPMFlowRegions::depth(const double *x, double far) const
   return -distance(x, far, wall);
 }
 
-double MPMFlowRegions::memory_usage() const
+/* ----------------------------------------------------------------------
+   places where regions are too thin, too near to each other, or in the way of bodies
+------------------------------------------------------------------------- */
+
+/** Is a place in a wall, and has it come there by the motion of the last two steps? */
+MPMFlowRegions::Meets MPMFlowRegions::meets(int wall, const double *x) const
 {
-  double bytes = cuts.capacity() * sizeof(Cut) + helds.capacity() * sizeof(Held) +
-      closed.capacity() + body_faces.capacity() * sizeof(int);
-  for (const auto *list : {&apertures, &volume_fractions, &fluxes, &levels})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  const double far = FAR * cells.lattice.h;
+  if (distance_from(walls[wall], x, far) >= 0.0) return AWAY;
+  double v[3], before[3];    // the place that was as far from the wall as x is now
+  velocity_at(wall, x, v);
+  for (int d = 0; d < 3; d++) before[d] = x[d] + 2.0 * duration_of_motion * v[d];
+  return distance_from(walls[wall], before, far) >= 0.0 ? COMES : INSIDE;
+}
+
+/** Warns of bodies that have come into walls or regions. Bodies touch nothing, so that a stone
+ *  would go on through the floor unnoticed. Overlap at the start of a run is intended, also where
+ *  water, and with it the cells in which overlap is seen, comes later. */
+void MPMFlowRegions::warn_of_bodies()
+{
+  constexpr int FACES = 6;
+  const double h = cells.lattice.h;
+  std::vector<int> mine((FACES + 1) * n(), 0), all(mine.size());
+  for (const auto &cell : cells.cells) {
+    if (levels[cell.number] > h || levels[cell.number] < -h) continue;
+    for (int w = 0; w < n(); w++) {
+      if (!walls[w].body) continue;
+      int *const here = &mine[(FACES + 1) * w];
+      double offset[3] = {0.5, 0.5, 0.5}, x[3];
+      for (int k = 0; k < 2 * dim; k++) {
+        if (!(cell.walls >> k & 1) || here[k] == COMES) continue;
+        offset[k / 2] = k % 2;
+        place(cell.index, offset, x);
+        offset[k / 2] = 0.5;
+        here[k] = std::max<int>(here[k], meets(w, x));
+      }
+      if (here[FACES] == COMES || !(levels[cell.number] < 0.0)) continue;
+      place(cell.index, offset, x);
+      const int own = meets(w, x);
+      for (int other = 0; other < n() && own != AWAY; other++) {
+        const int its = other == w ? AWAY : meets(other, x);
+        if (its != AWAY) here[FACES] = std::max({here[FACES], own, its});
+      }
+    }
+  }
+  MPI_Allreduce(mine.data(), all.data(), (int) all.size(), MPI_INT, MPI_MAX, world);
+  const bool first = met.empty();
+  met.resize(all.size());
+  for (int k = 0; k < (int) all.size(); k++) {
+    if (all[k] == AWAY || met[k]) continue;
+    met[k] = 1;
+    if (all[k] != COMES || first) continue;
+    const int face = k % (FACES + 1);
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/incompressible: the body of fix {} goes through {}, as bodies in a "
+                     "flow touch neither each other nor walls: end the run before, or hold it",
+                     walls[k / (FACES + 1)].body->id,
+                     face == FACES ? std::string("another region")
+                                   : fmt::format("wall {}{}", (char) ('x' + face / 2),
+                                                 face % 2 ? "hi" : "lo"));
+  }
+}
+
+/** Is there a wall between the middles of opposite faces that are both open? */
+bool MPMFlowRegions::is_thin(const MPMFlowLattice::Cell &cell) const
+{
+  constexpr double OPEN = 0.75, TOWARDS = 0.5;
+  const double h = cells.lattice.h;
+  for (int d = 0; d < dim; d++) {
+    if (aperture(cell.number, d) < OPEN || aperture(cell.near[2 * d + 1], d) < OPEN) continue;
+    double from_wall[2], sum = 0.0;
+    for (int s = 0; s < 2; s++) {
+      double offset[3] = {0.5, 0.5, 0.5}, x[3], n[3];
+      offset[d] = s;
+      place(cell.index, offset, x);
+      int wall;
+      sum += distance(x, FAR * h, wall);
+      normal_at(wall, x, n);
+      from_wall[s] = n[d];
+    }
+    if (sum < 1.001 * h && from_wall[0] < -TOWARDS && from_wall[1] > TOWARDS && !is_corner(cell, d))
+      return true;
+  }
+  return false;
+}
+
+/** A corner of a wall that ends in the cell is as thin there, but lets nothing through: next to the
+ *  cell, the wall is thicker than a cell. */
+bool MPMFlowRegions::is_corner(const MPMFlowLattice::Cell &cell, int axis) const
+{
+  // cells up to which a corner of 60 degrees gets that thick, wherever it ends in the cell
+  constexpr int NEAR = 2;
+  for (int e = 0; e < dim; e++) {
+    if (e == axis) continue;
+    for (int along = -NEAR; along <= NEAR; along++) {
+      int index[3] = {cell.index[0], cell.index[1], cell.index[2]}, wall;
+      index[e] += along;
+      bool solid = along != 0;
+      for (int s = 0; s < 2 && solid; s++) {
+        double offset[3] = {0.5, 0.5, 0.5}, x[3];
+        offset[axis] = s;
+        place(index, offset, x);
+        solid = distance(x, FAR * cells.lattice.h, wall) < 0.0;
+      }
+      if (solid) return true;
+    }
+  }
+  return false;
+}
+
+/** Less than a spacing between two regions that face each other: a cell has only a part of one
+ *  wall, so that forces on the other wall would count as forces on this one. */
+bool MPMFlowRegions::is_gap(const MPMFlowLattice::Cell &cell) const
+{
+  constexpr double AGAINST = -0.5;
+  const double h = cells.lattice.h, far = FAR * h;
+  double x[3], normal[2][3];
+  int wall;
+  place(cell.index, MIDDLE, x);
+  const double first = distance(x, far, wall);
+  normal_at(wall, x, normal[0]);
+  for (int w = 0; w < n(); w++) {
+    const double sum = w == wall ? 0.0 : first + distance_from(walls[w], x, far);
+    if (!(sum > LEAST_GAP * h && sum < 0.999 * h)) continue;
+    normal_at(w, x, normal[1]);
+    if (MathExtra::dot3(normal[0], normal[1]) < AGAINST) return true;
+  }
+  return false;
+}
+
+/** Warns of regions through which the flow goes, and of gaps between regions. */
+void MPMFlowRegions::warn_of_thin(int nthin, int ngaps)
+{
+  const int mine[2] = {nthin, ngaps};
+  int all[2];
+  MPI_Allreduce(mine, all, 2, MPI_INT, MPI_SUM, world);
+  if (!all[0] && !all[1]) return;
+  warned_of_thin = true;
+  if (comm->me) return;
+  if (all[0])
+    error->warning(
+        FLERR,
+        "Fix mpm/incompressible: regions are thinner than a node spacing in {} cells, so that "
+        "the flow goes through: use a smaller node spacing, or thicker walls",
+        all[0]);
+  if (all[1])
+    error->warning(
+        FLERR,
+        "Fix mpm/incompressible: regions leave gaps of less than a node spacing in {} cells, in "
+        "which the flow, its pressure, and the forces on either region are wrong: use a smaller "
+        "node spacing, or close the gap",
+        all[1]);
 }

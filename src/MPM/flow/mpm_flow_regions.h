@@ -129,10 +129,16 @@ class MPMFlowRegions : protected Pointers {
 
   /** Largest flux() of the walls on this rank. */
   double largest_speed() const { return speed; }
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(cuts, helds, closed, body_faces, apertures, volume_fractions, fluxes,
+                            levels);
+  }
 
  private:
   static constexpr double FAR = 4.0;    // distance up to which a wall is looked at, in spacings
+  // the middle of a cell from its lower corner, in spacings
+  static constexpr double MIDDLE[3] = {0.5, 0.5, 0.5};
 
   struct Wall {
     std::string id;
@@ -182,6 +188,7 @@ class MPMFlowRegions : protected Pointers {
   void normal_at(int wall, const double *x, double *n) const;
   void velocity_at(int wall, const double *x, double *v) const;
   void place(const int *index, const double *offset, double *x) const;
+  void corner_levels(const int *index, double *level) const;
   void continue_surface(std::vector<double> &share) const;
   void find_apertures();
   void find_cuts();

@@ -106,14 +106,13 @@ void MPMFlowRegions::continue_surface(std::vector<double> &share) const
     MathExtra::invert3(A, inverse);
     MathExtra::matvec(inverse, b, up);
     double slope = MathExtra::len3(up);
-    constexpr double center[3] = {0.5, 0.5, 0.5};
     double x[3], normal[3];
     int wall;
-    place(cell.index, center, x);
+    place(cell.index, MIDDLE, x);
     distance(x, FAR * cells.lattice.h, wall);
     normal_at(wall, x, normal);
-    if (slope <
-        LEAST_SLOPE * std::min(1.0, 2.0 * mean / n)) {    // equal depths: a film along the wall
+    // equal depths: a film along the wall
+    if (slope < LEAST_SLOPE * std::min(1.0, 2.0 * mean / n)) {
       for (int d = 0; d < 3; d++) up[d] = -normal[d];
       slope = 1.0;
     }
@@ -140,8 +139,7 @@ void MPMFlowRegions::continue_surface(std::vector<double> &share) const
 void MPMFlowRegions::hold(std::vector<double> &velocity, bool moving) const
 {
   const int here = dim == 2 ? 4 : 13, naround = dim == 2 ? 9 : 27;
-  constexpr int stride2[2] = {3, 1}, stride3[3] = {9, 3, 1};
-  const int *const stride = dim == 2 ? stride2 : stride3;
+  const int *const stride = MPMFlowLattice::STRIDE[dim - 2];
   changed.resize(helds.size());
   for (std::size_t k = 0; k < helds.size(); k++) {
     const auto &held = helds[k];

@@ -196,14 +196,9 @@ void MPMFlowRows::sum_all(const std::vector<double> &factor, double *sum)
 
 double MPMFlowRows::memory_usage() const
 {
-  double ints = place_of.capacity();
-  for (const auto *list : {&number, &next_to, &row, &places}) ints += list->capacity();
-  double reals = values.capacity();
+  double bytes =
+      MPM_NS::bytes_of(place_of, number, next_to, row, places, values, flags_out, flags_in, wanted);
   for (const auto &peer : peers)
-    for (int half = 0; half < 2; half++) {
-      ints += peer.give[half].capacity();
-      reals += peer.send[half].capacity();
-    }
-  return ints * sizeof(int) + reals * sizeof(double) + flags_out.capacity() + flags_in.capacity() +
-      wanted.capacity();
+    bytes += MPM_NS::bytes_of(peer.give[0], peer.give[1], peer.send[0], peer.send[1]);
+  return bytes;
 }

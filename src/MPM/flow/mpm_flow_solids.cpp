@@ -31,13 +31,14 @@ using namespace MPM_NS;
 
 // shear by which the stiffness of a law is found
 static constexpr double PROBE = 1.0e-6;
-// stiffness of a stretched solid over that at rest, up to which an interface reaches its balance with
-// the fluid in one step
+// stiffness of a stretched solid over that at rest, up to which an interface reaches its balance
+// with the fluid in one step
 static constexpr double STIFFER = 3.0;
 // least share of fluid that counts against shear along an
 // interface, over the largest share of fluid next to a point
 static constexpr double LEAST_SHARE = 0.5;
-// share of fluid next to a point from which on strains along the interface are those of the solid alone
+// share of fluid next to a point from which on strains along the interface are those of the solid
+// alone
 static constexpr double MIXED = 0.1;
 // share of fluid next to a point that counts as none
 static constexpr double LEAST_FLUID = 1.0e-6;
@@ -56,8 +57,8 @@ namespace {
 /** Places of components of a symmetric tensor, stored as xx yy zz xy xz yz. */
 constexpr int SYMMETRIC[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
-/** Kinds of boxes of gradients, by the axes of one of their gradients: cells, and boxes of the shears xy, xz,
- *  yz. */
+/** Kinds of boxes of gradients, by the axes of one of their gradients: cells, and boxes of the
+ *  shears xy, xz, yz. */
 constexpr int AXES[4][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 2}};
 constexpr int kinds(int dim)
 {
@@ -68,10 +69,10 @@ constexpr int kind_of(int c, int d)
   return c == d ? 0 : c + d;
 }
 
-/** Shares of a point of some width in boxes of one spacing, which are cells or are around their corners,
- *  edges, and faces: weights along each axis, and gradients of the velocity as means of those of boxes. The
- *  gradient of a box is the difference of two faces: a normal gradient that of its cell, a shear that of the
- *  faces on both sides of a corner (in 3d an edge). */
+/** Shares of a point of some width in boxes of one spacing, which are cells or are around their
+ *  corners, edges, and faces: weights along each axis, and gradients of the velocity as means of
+ *  those of boxes. The gradient of a box is the difference of two faces: a normal gradient that of
+ *  its cell, a shear that of the faces on both sides of a corner (in 3d an edge). */
 template <int dim> struct Boxes {
   enum Place { CELL, NODE };
   int first[2][3];    // [place][axis]: first one of two adjacent boxes
@@ -81,9 +82,8 @@ template <int dim> struct Boxes {
   {
     for (int place = CELL; place <= NODE; place++)
       for (int d = 0; d < dim; d++) {
-        const double shift = place == NODE
-            ? 0.5
-            : 0.0;    // from the lower end of the cell with its number to that of a box
+        // from the lower end of the cell with its number to that of a box
+        const double shift = place == NODE ? 0.5 : 0.0;
         const double low = t[d] + shift - 0.5 * width, box = std::floor(low);
         first[place][d] = (int) box;
         share[place][d][0] = std::min(1.0, (box + 1.0 - low) / width);
@@ -91,22 +91,20 @@ template <int dim> struct Boxes {
       }
   }
 
-  /** Calls f(number of the cell that is a box, or has it at its lower side; share) for the boxes at these
-   *  places along each axis. */
+  /** Calls f(number of the cell that is a box, or has it at its lower side; share) for the boxes at
+   *  these places along each axis. */
   template <class F>
   void visit_boxes(const Grid &grid, const Grid::Block &block, const Place *places,
                    const F &f) const
   {
-    int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
+    int base[3] = {0, 0, 0};
     for (int d = 0; d < dim; d++) base[d] = first[places[d]][d];
     const MPMFlowStencil<dim> reach(grid, block, base);
-    for (k[0] = 0; k[0] < 2; k[0]++)
-      for (k[1] = 0; k[1] < 2; k[1]++)
-        for (k[2] = 0; k[2] < (dim == 3 ? 2 : 1); k[2]++) {
-          double weight = 1.0;
-          for (int d = 0; d < dim; d++) weight *= share[places[d]][d][k[d]];
-          if (weight > 0.0) f(reach.number(k), weight);
-        }
+    for_each_index<dim>({2, 2, 2}, [&](const int *k) {
+      double weight = 1.0;
+      for (int d = 0; d < dim; d++) weight *= share[places[d]][d][k[d]];
+      if (weight > 0.0) f(reach.number(k), weight);
+    });
   }
 
   /** Places of the boxes of the gradient along d of velocities along c. */
@@ -115,55 +113,49 @@ template <int dim> struct Boxes {
     for (int e = 0; e < dim; e++) places[e] = c != d && (e == c || e == d) ? NODE : CELL;
   }
 
-  /** Calls f(number of a cell, coefficient of the velocity of its face normal to c in the gradient along d,
-   *  in 1/spacing). */
+  /** Calls f(number of a cell, coefficient of the velocity of its face normal to c in the gradient
+   *  along d, in 1/spacing). */
   template <class F>
   void visit_gradients(const Grid &grid, const Grid::Block &block, int c, int d, const F &f) const
   {
     Place places[3];
     places_of(c, d, places);
-    int base[3] = {0, 0, 0}, n[3] = {1, 1, 1}, k[3] = {0, 0, 0};
-    for (int e = 0; e < dim; e++) {
-      base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
-      n[e] = e == d ? 3 : 2;
-    }
+    int base[3] = {0, 0, 0}, n[3] = {2, 2, 2};
+    n[d] = 3;
+    for (int e = 0; e < dim; e++) base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
     const MPMFlowStencil<dim> reach(grid, block, base);
     const double *const along = share[places[d]][d];
     const double slope[3] = {-along[0], along[0] - along[1], along[1]};
-    for (k[0] = 0; k[0] < n[0]; k[0]++)
-      for (k[1] = 0; k[1] < n[1]; k[1]++)
-        for (k[2] = 0; k[2] < n[2]; k[2]++) {
-          double g = 1.0;
-          for (int e = 0; e < dim; e++) g *= e == d ? slope[k[e]] : share[places[e]][e][k[e]];
-          f(reach.number(k), g);
-        }
+    for_each_index<dim>(n, [&](const int *k) {
+      double g = 1.0;
+      for (int e = 0; e < dim; e++) g *= e == d ? slope[k[e]] : share[places[e]][e][k[e]];
+      f(reach.number(k), g);
+    });
   }
 
-  /** The same for a mean over boxes with other weights, weight(number of the cell of a box). No calls where
-   *  these are all zero. */
+  /** The same for a mean over boxes with other weights, weight(number of the cell of a box). No
+   *  calls where these are all zero. */
   template <class W, class F>
   void visit_gradients_by(const Grid &grid, const Grid::Block &block, int c, int d, const W &weight,
                           const F &f) const
   {
     Place places[3];
     places_of(c, d, places);
-    int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
+    int base[3] = {0, 0, 0};
     for (int e = 0; e < dim; e++) base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
     const MPMFlowStencil<dim> reach(grid, block, base);
     int64_t low[8], high[8];
     double weights[8], sum = 0.0;
     int n = 0;
-    for (k[0] = 0; k[0] < 2; k[0]++)
-      for (k[1] = 0; k[1] < 2; k[1]++)
-        for (k[2] = 0; k[2] < (dim == 3 ? 2 : 1); k[2]++, n++) {
-          int above[3] = {k[0], k[1], k[2]};
-          above[d]++;
-          low[n] = reach.number(k);
-          high[n] = reach.number(above);
-          weights[n] = weight(c == d ? low[n] : high[n]);
-          for (int e = 0; e < dim; e++) weights[n] *= share[places[e]][e][k[e]];
-          sum += weights[n];
-        }
+    for_each_index<dim>({2, 2, 2}, [&](const int *k) {
+      int above[3] = {k[0], k[1], k[2]};
+      above[d]++;
+      low[n] = reach.number(k);
+      high[n] = reach.number(above);
+      weights[n] = weight(c == d ? low[n] : high[n]);
+      for (int e = 0; e < dim; e++) weights[n] *= share[places[e]][e][k[e]];
+      sum += weights[n++];
+    });
     for (int j = 0; j < n && sum > 0.0; j++) {
       f(high[j], weights[j] / sum);
       f(low[j], -weights[j] / sum);
@@ -290,10 +282,29 @@ double MPMFlowSolids::density_of(int i) const
   return m < 0 ? 1.0 : materials[m]->density(i);
 }
 
+/** Lets point i wait, and calls f(m) once all places of material m are taken. */
+template <class F> void MPMFlowSolids::add(int m, int i, const F &f)
+{
+  auto &p = *pending[m];
+  p.point[p.n++] = i;
+  if (p.n < BATCH) return;
+  f(m);
+  p.n = 0;
+}
+
+/** Calls f(material) for the points that still wait. */
+template <class F> void MPMFlowSolids::finish(const F &f)
+{
+  for (std::size_t m = 0; m < pending.size(); m++) {
+    if (pending[m]->n) f((int) m);
+    pending[m]->n = 0;
+  }
+}
+
 /* ----------------------------------------------------------------------
-   Minus the stress times the gradient of functions of faces. Beyond walls, forces act on the velocities of
-   images, so that they do the work of the stress. The part that is the same along all axes of the lattice is
-   left to the pressure.
+   Minus the stress times the gradient of functions of faces. Beyond walls, forces act on the
+   velocities of images, so that they do the work of the stress. The part that is the same along all
+   axes of the lattice is left to the pressure.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
@@ -353,8 +364,8 @@ void MPMFlowSolids::give_forces(std::vector<double> &forces)
 }
 
 /* ----------------------------------------------------------------------
-   The gradient is that at the middle of the path of a point, where the point has the velocity with which it
-   moves: the map of the step is then of second order. It keeps volume, as the flow does.
+   The gradient is that at the middle of the path of a point, where the point has the velocity with
+   which it moves: the map of the step is then of second order. It keeps volume, as the flow does.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt, double viscosity)
@@ -362,6 +373,9 @@ template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt,
   std::vector<double> stiffness;
   for (std::size_t m = 0; m < materials.size(); m++)
     stiffness.push_back(STIFFER * stiffness_at_rest((int) m, dt));
+  const auto update_points = [&](int m) {
+    this->update_points(m, dt);
+  };
   PlaceOfPoint<dim> place(cells.lattice);
   Boxes<dim> boxes;
   const double inv_h = 1.0 / cells.lattice.h;
@@ -424,20 +438,14 @@ template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt,
       for (int c = 0; c < dim; c++)
         for (int d = 0; d < dim; d++)
           to.L[dim * dim * to.n + dim * d + c] = (scale * M[3 * c + d] - (c == d ? 1.0 : 0.0)) / dt;
-      to.point[to.n++] = i;
-      if (to.n == BATCH) update_points(m, dt);
+      add(m, i, update_points);
     }
-  for (std::size_t m = 0; m < pending.size(); m++) update_points((int) m, dt);
-}
-
-void MPMFlowSolids::deform(const double *velocity, double dt, double viscosity)
-{
-  cells.lattice.dim == 2 ? strain<2>(velocity, dt, viscosity) : strain<3>(velocity, dt, viscosity);
+  finish(update_points);
 }
 
 /* ----------------------------------------------------------------------
-   Shares of solid in the volume of points in boxes of one spacing around corners of cells. The lattice has
-   means of shears over these boxes.
+   Shares of solid in the volume of points in boxes of one spacing around corners of cells. The
+   lattice has means of shears over these boxes.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowSolids::find_shares()
@@ -471,8 +479,8 @@ template <int dim> void MPMFlowSolids::find_shares()
   cells.reflect_cells(solid_share.data());
 }
 
-/** Finds the shares of fluid in the boxes of a point, and the normal. False where there is no fluid or no
- *  normal. */
+/** Finds the shares of fluid in the boxes of a point, and the normal. False where there is no fluid
+ *  or no normal. */
 template <int dim>
 bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, double width,
                                    Interface &to) const
@@ -480,10 +488,9 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
   constexpr int KINDS = kinds(dim);
   Boxes<dim> boxes;
   boxes.find(t, width);
-  double length = 0.0;
+  double length = 0.0, most = 0.0;
   auto &fluid = to.fluid;
   auto &n = to.n;
-  double most = 0.0;
   std::fill_n(fluid, KINDS, 0.0);
   std::fill_n(n, 3, 0.0);
   for (int kind = 0; kind < KINDS; kind++) {
@@ -498,9 +505,10 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
   to.most = most;
   if (most < LEAST_FLUID) return false;
 
-  // the normal, by splines of cells, which reach all of these boxes: even next to no fluid gives a direction
+  // the normal, by splines of cells, which reach all of these boxes: even next to no fluid gives a
+  // direction
 
-  int base[3] = {0, 0, 0}, k[3] = {0, 0, 0};
+  int base[3] = {0, 0, 0};
   double spline[3][3], slope[3][3];
   for (int d = 0; d < dim; d++) {
     base[d] = (int) std::floor(t[d]) - 1;
@@ -513,16 +521,14 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
     slope[d][2] = x + 0.5;
   }
   const MPMFlowStencil<dim> reach(cells.grid, block, base);
-  for (k[0] = 0; k[0] < 3; k[0]++)
-    for (k[1] = 0; k[1] < 3; k[1]++)
-      for (k[2] = 0; k[2] < (dim == 3 ? 3 : 1); k[2]++) {
-        const double share = solid_share[reach.number(k)];
-        for (int d = 0; d < dim; d++) {
-          double weight = share;
-          for (int e = 0; e < dim; e++) weight *= e == d ? slope[e][k[e]] : spline[e][k[e]];
-          n[d] += weight;
-        }
-      }
+  for_each_index<dim>({3, 3, 3}, [&](const int *k) {
+    const double share = solid_share[reach.number(k)];
+    for (int d = 0; d < dim; d++) {
+      double weight = share;
+      for (int e = 0; e < dim; e++) weight *= e == d ? slope[e][k[e]] : spline[e][k[e]];
+      n[d] += weight;
+    }
+  });
   for (int d = 0; d < dim; d++) length += n[d] * n[d];
   if (!(length > 0.0)) return false;
   length = std::sqrt(length);
@@ -531,16 +537,16 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
 }
 
 /* ----------------------------------------------------------------------
-   Next to a fluid, the velocity gradient in a box is a mean of those of fluid and solid. Shear of planes
-   along the interface: the stress along the interface is the same on both sides, so the fluid has the shear
-   of the solid plus that which the stress of the law causes by its viscosity; the rest is that of the solid.
-   Without this both would have the same shear, and solids would hold a layer of fluid of up to half a
-   spacing. The stress is that at the end of the step: a nearly rigid solid then leaves all shear
-   to the fluid, whatever the duration of the step.
+   Next to a fluid, the velocity gradient in a box is a mean of those of fluid and solid. Shear of
+   planes along the interface: the stress along the interface is the same on both sides, so the
+   fluid has the shear of the solid plus that which the stress of the law causes by its viscosity;
+   the rest is that of the solid. Without this both would have the same shear, and solids would hold
+   a layer of fluid of up to half a spacing. The stress is that at the end of the step: a nearly
+   rigid solid then leaves all shear to the fluid, whatever the duration of the step.
 
-   The other strains are the same on both sides at the interface, but fluid in a box away from it has others.
-   The solid takes those of boxes in proportion to their solid (weight_of()), and gives them its stress:
-   otherwise a corner of solid in a box would make all of the box stiff.
+   The other strains are the same on both sides at the interface, but fluid in a box away from it
+   has others. The solid takes those of boxes in proportion to their solid (weight_of()), and gives
+   them its stress: otherwise a corner of solid in a box would make all of the box stiff.
 ------------------------------------------------------------------------- */
 
 template <int dim>
@@ -549,8 +555,8 @@ void MPMFlowSolids::leave_to_fluid(int i, const Interface &interface, double sti
 {
   const auto &fluid = interface.fluid;
   const auto &n = interface.n;
-  // the part of the present traction along the interface, and what the law adds to it in the step if the
-  // solid has all of the strain
+  // the part of the present traction along the interface, and what the law adds to it in the step
+  // if the solid has all of the strain
 
   const double *const tau = MPMPoints::get(atom)->tau[i];
   double traction[3] = {}, normal = 0.0, square = 0.0;
@@ -564,7 +570,8 @@ void MPMFlowSolids::leave_to_fluid(int i, const Interface &interface, double sti
   }
   if (!(square > 0.0)) return;
 
-  // this stress, at the end of the step, causes the additional shear of the fluid, and is reduced by it
+  // this stress, at the end of the step, causes the additional shear of the fluid, and is reduced
+  // by it
 
   double share = 0.0;
   for (int c = 0; c < dim; c++)
@@ -600,7 +607,6 @@ void MPMFlowSolids::load(int m, double dt)
 void MPMFlowSolids::update_points(int m, double dt)
 {
   auto &p = *pending[m];
-  if (!p.n) return;
   load(m, dt);
   auto &material = *materials[m];
   material.update_batch(p.batch, *kernels);
@@ -614,19 +620,17 @@ void MPMFlowSolids::update_points(int m, double dt)
     std::copy_n(p.tau + 6 * k, 6, points.tau[i]);
     if (width) std::copy_n(p.rows.data() + (std::size_t) width * k, width, material.history[i]);
   }
-  p.n = 0;
 }
 
 /* ----------------------------------------------------------------------
-   Stiffness of a law against shear waves: a small shear along a of planes with the normal n changes the
-   stress along a on these planes. Directions are those of axes and diagonals. In steps of this duration a
-   viscosity of the law acts like a stiffness.
+   Stiffness of a law against shear waves: a small shear along a of planes with the normal n changes
+   the stress along a on these planes. Directions are those of axes and diagonals. In steps of this
+   duration a viscosity of the law acts like a stiffness.
 ------------------------------------------------------------------------- */
 
 void MPMFlowSolids::probe(int m)
 {
   auto &p = *pending[m];
-  if (!p.n) return;
   const int dim = cells.lattice.dim;
   const double r = std::sqrt(0.5);
   struct Shear {
@@ -675,7 +679,6 @@ void MPMFlowSolids::probe(int m)
       }
     }
   }
-  p.n = 0;
 }
 
 /** Shear modulus of a material before any deformation, with what its viscosity adds in a step. */
@@ -703,19 +706,17 @@ double MPMFlowSolids::stiffness_at_rest(int m, double dt)
 double MPMFlowSolids::stable_dt(tagint &tag)
 {
   for (auto &one : pending) one->stiffest = 0.0;
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!cells.is_point(i) || !holds(i)) continue;
-    const int m = material_of(i);
-    auto &p = *pending[m];
-    p.point[p.n++] = i;
-    if (p.n == BATCH) probe(m);
-  }
+  const auto probe = [this](int m) {
+    this->probe(m);
+  };
+  for (int i = 0; i < atom->nlocal; i++)
+    if (cells.is_point(i) && holds(i)) add(material_of(i), i, probe);
+  finish(probe);
   double most = 0.0;
-  for (std::size_t m = 0; m < pending.size(); m++) {
-    probe((int) m);
-    if (pending[m]->stiffest <= most) continue;
-    most = pending[m]->stiffest;
-    tag = pending[m]->tag;
+  for (const auto &one : pending) {
+    if (one->stiffest <= most) continue;
+    most = one->stiffest;
+    tag = one->tag;
   }
   const double speed = std::sqrt(most * force->ftm2v / force->nktv2p);
   return speed > 0.0 ? cells.lattice.h / (std::sqrt(2.0 * cells.lattice.dim) * speed)
@@ -728,28 +729,21 @@ void MPMFlowSolids::visit_batches(
   const int dim = cells.lattice.dim;
   const auto flush = [&](int m) {
     auto &p = *pending[m];
-    if (!p.n) return;
     std::fill_n(p.L, dim * dim * p.n, 0.0);
     load(m, update->dt);
     f(p.batch, p.point, *materials[m]);
-    p.n = 0;
   };
   for (int i = 0; i < atom->nlocal && !materials.empty(); i++) {
     if (!(atom->mask[i] & groupbit) || !cells.is_point(i) || !holds(i)) continue;
     const int m = material_of(i);
-    if (m < 0) continue;
-    auto &p = *pending[m];
-    p.point[p.n++] = i;
-    if (p.n == BATCH) flush(m);
+    if (m >= 0) add(m, i, flush);
   }
-  for (std::size_t m = 0; m < pending.size(); m++) flush((int) m);
+  finish(flush);
 }
 
 double MPMFlowSolids::memory_usage() const
 {
-  double bytes =
-      (history.capacity() + shares.capacity() + solid_share.capacity()) * sizeof(double) +
-      pending.size() * (double) sizeof(Pending);
-  for (const auto &one : pending) bytes += one->rows.capacity() * sizeof(double);
+  double bytes = bytes_of(history, shares, solid_share) + pending.size() * (double) sizeof(Pending);
+  for (const auto &one : pending) bytes += bytes_of(one->rows);
   return bytes;
 }

@@ -86,6 +86,15 @@ template <int dim, class F> inline void visit(const MPMFlowStencil<dim> &stencil
     }
 }
 
+/** Calls f(k) for all indices k below these limits along each axis. */
+template <int dim, class F> inline void for_each_index(const int (&n)[3], const F &f)
+{
+  int k[3] = {0, 0, 0};
+  for (k[0] = 0; k[0] < n[0]; k[0]++)
+    for (k[1] = 0; k[1] < n[1]; k[1]++)
+      for (k[2] = 0; k[2] < (dim == 3 ? n[2] : 1); k[2]++) f(k);
+}
+
 /** Calls f(c) for each axis c, a std::integral_constant. */
 template <int dim, class F> inline void for_each_axis(const F &f)
 {

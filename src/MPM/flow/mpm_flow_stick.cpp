@@ -156,15 +156,6 @@ double MPMFlowStick::velocity_near(int64_t cell, int pair, int64_t face) const
                                          : regions.velocity_at_face(wall, face / dim, face % dim);
 }
 
-double MPMFlowStick::memory_usage() const
-{
-  double bytes = nearest.capacity() * sizeof(int);
-  for (const auto *list : {&level, &carried, &masses, &drags, &areas, &volume_fractions,
-                           &edge_volume_fractions, &known, &other, &other_known})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
-}
-
 MPMFlowStick::Gap MPMFlowStick::between(int64_t upper, int64_t lower) const
 {
   const bool up = is_wall(upper), down = is_wall(lower);

@@ -75,7 +75,11 @@ class MPMFlowStick {
    *  Collective. */
   void hold(std::vector<double> &velocity);
 
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(nearest, level, carried, masses, drags, areas, volume_fractions,
+                            edge_volume_fractions, known, other, other_known);
+  }
 
  private:
   int npair() const { return cells.lattice.dim == 2 ? 1 : 3; }
@@ -88,9 +92,9 @@ class MPMFlowStick {
   bigint nbuild = -1;
   // [face] distance of the middle from walls, positive in the flow [spacings]; see velocity()
   std::vector<double> level, carried;
-  std::vector<double> masses, drags, areas, volume_fractions,
-      edge_volume_fractions;    // see the functions
-  std::vector<int> nearest;     // [edge] wall, or -1
+  // see the functions
+  std::vector<double> masses, drags, areas, volume_fractions, edge_volume_fractions;
+  std::vector<int> nearest;    // [edge] wall, or -1
   std::vector<double> known, other, other_known;
 };
 

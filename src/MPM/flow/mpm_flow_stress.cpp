@@ -10,8 +10,6 @@
 
 #include "field/mpm_node_system.h"
 #include "flow/mpm_flow_regions.h"
-#include "flow/mpm_flow_stick.h"
-#include "flow/mpm_flow_viscosities.h"
 
 #include <algorithm>
 
@@ -20,53 +18,12 @@ using namespace MPM_NS;
 
 // shortest distance of the surface from the middle of a cell that masses use, in spacings
 static constexpr double NEAREST = 0.1;
-// strides of neighbors among the cells around one
-static constexpr int STRIDE[2][3] = {{3, 1, 0}, {9, 3, 1}};
 
 MPMFlowStress::MPMFlowStress(LAMMPS *lmp, const MPMFlowLattice &cells,
                              const MPMFlowPressure &water) :
     lmp(lmp),
     cells(cells), water(water), dim(cells.lattice.dim), width(dim * (dim + 1) / 2)
 {
-}
-
-/** Open share of a face. */
-double MPMFlowStress::aperture(int64_t face) const
-{
-  return stick ? water.aperture(face / dim, face % dim) : 1.0;
-}
-
-/** Open share of a side of a cell that is not in a wall of the box. */
-double MPMFlowStress::aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const
-{
-  return aperture((int64_t) (side % 2 ? cell.near[side] : cell.number) * dim + side / 2);
-}
-
-bool MPMFlowStress::is_wall(int64_t face) const
-{
-  return stick && stick->holds(face);
-}
-
-/** Open share of a face for shear along another axis. */
-double MPMFlowStress::shear_area(int64_t face, int axis) const
-{
-  return stick ? stick->area(face, axis) : 1.0;
-}
-
-/** Viscosities over the largest one. */
-double MPMFlowStress::in_cell(int64_t cell) const
-{
-  return viscosities ? viscosities->in_cell(cell) : 1.0;
-}
-
-double MPMFlowStress::at_face(int64_t upper, int64_t lower) const
-{
-  return viscosities ? 0.5 * (viscosities->in_cell(upper) + viscosities->in_cell(lower)) : 1.0;
-}
-
-double MPMFlowStress::at_edge(int64_t cell, int pair) const
-{
-  return viscosities ? viscosities->at_edge(cell, pair) : 1.0;
 }
 
 /** Lengths of wet cells along each axis: up to the middle between two of them, to a wall, or to the
@@ -190,7 +147,8 @@ void MPMFlowStress::find_stresses()
     for (int c = 0; c < dim; c++)
       for (int d = c + 1; d < dim; d++) {
         if (cell.walls >> 2 * c & 1 || cell.walls >> 2 * d & 1) continue;
-        const int step_c = STRIDE[dim - 2][c], step_d = STRIDE[dim - 2][d];
+        const int step_c = MPMFlowLattice::STRIDE[dim - 2][c],
+                  step_d = MPMFlowLattice::STRIDE[dim - 2][d];
         const int64_t left = around[-step_c], below = around[-step_d],
                       corner = around[-step_c - step_d];
         // two cells that meet at the edge alone do not hold each other
@@ -428,11 +386,7 @@ SolveReport MPMFlowStress::step(double new_number, std::vector<double> &velocity
 
 double MPMFlowStress::memory_usage() const
 {
-  double bytes = faces.capacity() * sizeof(Face) + normals.capacity() * sizeof(Normal) +
-      edges.capacity() * sizeof(Edge) + unknowns.capacity() * sizeof(int64_t) +
-      method.memory_usage();
-  for (const auto *list : {&length, &inverse_mass, &volumes, &carried, &speed, &right_side,
-                           &solution, &stress, &inverse_diagonal})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return method.memory_usage() +
+      bytes_of(faces, normals, edges, unknowns, length, inverse_mass, volumes, carried, speed,
+               right_side, solution, stress, inverse_diagonal);
 }

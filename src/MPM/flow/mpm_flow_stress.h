@@ -10,14 +10,13 @@
 #define LMP_MPM_FLOW_STRESS_H
 
 #include "flow/mpm_flow_pressure.h"
+#include "flow/mpm_flow_stick.h"
+#include "flow/mpm_flow_viscosity.h"
 #include "solve/linear_system.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
-class MPMFlowStick;
-class MPMFlowViscosities;
-
 /** Viscosity of an incompressible fluid in an implicit step, together with the pressure (E.
  *  Larionov, C. Batty, R. Bridson, ACM Trans. Graph. 36 (2017) 101). Velocities u and stresses
  *  sigma at the end of a step dt satisfy
@@ -131,13 +130,29 @@ class MPMFlowStress : public MPM_NS::LinearSystem {
   void find_forces();
   void find_diagonal();
   void find_edge(Edge &, int pair);
-  double aperture(int64_t face) const;
-  double aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const;
-  bool is_wall(int64_t face) const;
-  double shear_area(int64_t face, int axis) const;
-  double in_cell(int64_t cell) const;
-  double at_face(int64_t upper, int64_t lower) const;
-  double at_edge(int64_t cell, int pair) const;
+  /** Open share of a face. */
+  double aperture(int64_t face) const
+  {
+    return stick ? water.aperture(face / dim, face % dim) : 1.0;
+  }
+  /** Open share of a side of a cell that is not in a wall of the box. */
+  double aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const
+  {
+    return aperture((int64_t) (side % 2 ? cell.near[side] : cell.number) * dim + side / 2);
+  }
+  bool is_wall(int64_t face) const { return stick && stick->holds(face); }
+  /** Open share of a face for shear along another axis. */
+  double shear_area(int64_t face, int axis) const { return stick ? stick->area(face, axis) : 1.0; }
+  /** Viscosities over the largest one. */
+  double in_cell(int64_t cell) const { return viscosities ? viscosities->in_cell(cell) : 1.0; }
+  double at_face(int64_t upper, int64_t lower) const
+  {
+    return viscosities ? 0.5 * (viscosities->in_cell(upper) + viscosities->in_cell(lower)) : 1.0;
+  }
+  double at_edge(int64_t cell, int pair) const
+  {
+    return viscosities ? viscosities->at_edge(cell, pair) : 1.0;
+  }
   bool several() const { return viscosities || inverse_density; }
   bool is_held(int64_t face) const { return mobility && (*mobility)[face] == 0.0; }
   void strain(const double *u, double *out, double sign) const;

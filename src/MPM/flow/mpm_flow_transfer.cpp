@@ -12,7 +12,7 @@
 #include "flow/mpm_flow_regions.h"
 #include "flow/mpm_flow_solids.h"
 #include "flow/mpm_flow_stencil.h"
-#include "flow/mpm_flow_viscosities.h"
+#include "flow/mpm_flow_viscosity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -505,9 +505,9 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         change_by_shift<dim>(points, i, shift, v, update.shift_energy);
       }
 
-      // The midpoint rule in the field of velocities, which has no divergence.
-      // With all of the change once more, velocities are those in the middle of
-      // the step where points were at its start, and paths are straight
+      // The midpoint rule in the field of velocities, which has no divergence. With all of the
+      // change once more, velocities are those in the middle of the step where points were at its
+      // start, and paths are straight
 
       double middle[3] = {x[0], x[1], x[2]}, at_middle[dim];
       const double *start = now;

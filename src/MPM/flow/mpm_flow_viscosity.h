@@ -14,7 +14,47 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class MPMFlowViscosities;
+/** Viscosities of a flow of several liquids, as shares of the largest one.
+ *
+ *  Stresses are in the middle of cells and at edges, and belong to boxes of one spacing around
+ *  these places. A shear stress is the same on both sides of an interface that is normal to one of
+ *  its two axes, and the shears add up: at edges, the viscosity is the harmonic mean over the
+ *  volume of points in the box. A normal strain is the same on both sides, and the stresses add up:
+ *  in cells, it is the arithmetic mean. Layers along the lattice lines thus have the velocities of
+ *  theory, wherever their interface is in a cell. */
+class MPMFlowViscosities {
+ public:
+  /** Number of places of viscosities: cells, and edges 01, 02, 12. */
+  static constexpr int kinds(int dim) { return dim == 2 ? 2 : 4; }
+
+  /** viscosity: of points that are in none of the liquids. */
+  MPMFlowViscosities(const MPMFlowLattice &cells, double viscosity);
+  /** Adds the liquid of the points with a bit of their group; a point in several has the last
+   *  one. */
+  void add(int bit, double viscosity);
+
+  double largest() const { return most; }
+  /** Finds the viscosities of cells and edges from the volumes of points. Collective. */
+  void find(double *const *x, const double *volume, const int *mask);
+  /** Viscosity in the middle of a cell over the largest one. */
+  double in_cell(int64_t cell) const { return mean[cell * kinds(dim)]; }
+  /** The same at the lower edge of a cell between the axes of a pair: 01, 02, 12. */
+  double at_edge(int64_t cell, int pair) const { return mean[cell * kinds(dim) + 1 + pair]; }
+
+  double memory_usage() const { return MPM_NS::bytes_of(sums, mean); }
+
+ private:
+  const MPMFlowLattice &cells;
+  const int dim;
+  double most;
+  std::vector<int> bits = {0};
+  std::vector<double> viscosities;
+  // [cell][kind][2] volume; volume times viscosity, or over it at edges
+  std::vector<double> sums;
+  std::vector<double> mean;    // [cell][kind]
+
+  template <int d> void give(double *const *x, const double *volume, const int *mask);
+};
 
 /** Stress of a viscous fluid on a staggered lattice, 2 mu times the rate of strain. Normal stresses
  *  are at the middle of cells, shear stresses at edges. The stress is zero in dry cells, and at

@@ -137,10 +137,7 @@ void FixMPMDeform::refuse_combinations() const
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/deform {} cannot be used with fix {} (style {}): {}", id, other->id,
                    style, why);
-  if (std::none_of(drive, drive + NPART, [](MPMMeanDeformation::Drive d) {
-        return d == MPMMeanDeformation::STRESS;
-      }))
-    return;
+  if (!std::count(drive, drive + NPART, MPMMeanDeformation::STRESS)) return;
   for (const auto *rest : find_fixes<FixMPMRelax>(lmp))
     if (rest->ends_runs())
       error->all(
@@ -210,9 +207,7 @@ void FixMPMDeform::find_motion()
 
   const double dt = fields[0]->step_dt();
   double inertia = 0.0;    // [pressure time^2]
-  if (std::any_of(drive, drive + NPART, [](MPMMeanDeformation::Drive d) {
-        return d == MPMMeanDeformation::STRESS;
-      })) {
+  if (std::count(drive, drive + NPART, MPMMeanDeformation::STRESS)) {
     double mine = 0.0, mass, edge = 0.0;
     for (const auto *field : fields)
       for (int i = 0; i < atom->nlocal; i++)
@@ -277,8 +272,7 @@ void FixMPMDeform::end_motion()
 {
   double tau[6], P[9];
   find_stress(tau, P);
-  double work = cell.end_step(tau, P);
-  work *= volume() / force->nktv2p;
+  const double work = cell.end_step(tau, P) * (volume() / force->nktv2p);
   cell.past.work += work;
   if (comm->me) return;
   // stress takes this from the mean motion, besides what it takes from that of nodes

@@ -31,6 +31,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -57,15 +58,13 @@ void FixMPMImplicit::init()
 {
   require_field(lmp, *this);
   refuse_second(lmp, *this);
-  for (auto *ifix : modify->get_fix_list()) {
-    const std::string other = ifix->style;
-    if (other == "mpm/dt" || other == "dt/reset")
+  for (auto *other : modify->get_fix_list())
+    if (strcmp(other->style, "mpm/dt") == 0 || strcmp(other->style, "dt/reset") == 0)
       error->all(
           FLERR, Error::NOLASTLINE,
           "Fix mpm/implicit takes steps of any size, but fix {} {} sets that of explicit steps: "
           "remove it, and use timestep",
-          other, ifix->id);
-  }
+          other->style, other->id);
 }
 
 void FixMPMImplicit::init_physics(MPMPlan &plan)
@@ -139,8 +138,8 @@ void FixMPMImplicit::add_stages(MPMPlan &plan, MPMPlan::Place place)
 
 void FixMPMImplicit::setup(int)
 {
-  for (const auto *elements :
-       find_fixes<FixMPMElements>(lmp))    // elements know of their pressure now
+  // elements know of their pressure now
+  for (const auto *elements : find_fixes<FixMPMElements>(lmp))
     if (const char *const what = elements->beyond_trials())
       error->all(
           FLERR, Error::NOLASTLINE,
@@ -155,7 +154,9 @@ void FixMPMImplicit::setup(int)
 
 void FixMPMImplicit::step()
 {
-  if (time.is_static() && !warned_of_rotation) warn_of_rotation();
+  // at the start of steps, as the step in which a body turns for the first time has no such error
+  if (time.is_static() && !warned_of_rotation)
+    warned_of_rotation = warn_of_mls_rotation(*this, fields);
   const double begin = platform::walltime();
   const std::vector<double> energies = solver->step(fields[0]->step_dt());
   seconds += platform::walltime() - begin;
@@ -225,21 +226,6 @@ void FixMPMImplicit::rest()
   for (auto *field : fields) put_to_rest(*field, taken);
 }
 
-/** Warns once of bodies that are turned. Called at the start of steps: the step in which a body
- *  turns for the first time has no such error. */
-void FixMPMImplicit::warn_of_rotation()
-{
-  for (const auto *field : fields) {
-    const double rotation = mls_rotation(*field);
-    if (!is_large_rotation(rotation)) continue;
-    warned_of_rotation = true;
-    if (comm->me == 0)
-      error->warning(FLERR, "Fix mpm/implicit {}: {}", id,
-                     warning_of_mls_rotation(rotation, field->id()));
-    return;
-  }
-}
-
 std::vector<MPMPhysics::Account> FixMPMImplicit::accounts() const
 {
   if (!time.is_static()) return {};
@@ -282,11 +268,6 @@ void FixMPMImplicit::post_run()
                  last[RATIO], 1000.0 * seconds / steps, parts, levels, unstable);
 }
 
-double FixMPMImplicit::compute_scalar()
-{
-  return last[RATIO];
-}
-
 double FixMPMImplicit::compute_vector(int k)
 {
   static constexpr int SINCE_START[3] = {NEWTON, LINEAR, CUTS};
@@ -294,11 +275,6 @@ double FixMPMImplicit::compute_vector(int k)
   if (k == 10) return total[MADE];
   if (k >= 8) return last[k == 8 ? PARTS : LAST_INDEFINITE];
   return k < 5 ? last[k] : total[SINCE_START[k - 5]];
-}
-
-double FixMPMImplicit::memory_usage()
-{
-  return FixMPMState::memory_usage() + (solver ? solver->memory_usage() : 0.0);
 }
 
 /* ---------------------------------------------------------------------- */

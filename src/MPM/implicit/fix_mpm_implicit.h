@@ -34,9 +34,12 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void init() override;
   void setup(int) override;
   void post_run() override;
-  double compute_scalar() override;
+  double compute_scalar() override { return last[RATIO]; }
   double compute_vector(int) override;
-  double memory_usage() override;
+  double memory_usage() override
+  {
+    return FixMPMState::memory_usage() + (solver ? solver->memory_usage() : 0.0);
+  }
   void write_restart(FILE *) override;
   void restart(char *) override;
 
@@ -71,7 +74,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   double taken[2] = {};
   double at_start[NTOTAL] = {};       // total[] at the start of this run
   double seconds = 0.0;               // time spent in the solver in this run
-  bool warned_of_rotation = false;    // was it reported that rotated bodies yield with stress mls?
+  bool warned_of_rotation = false;    // of bodies that have turned, with stress mls
 
   /** Does an implicit step of this field solve for a pressure of this physics, too? */
   static bool has_pressure(MPMPhysics *, const MPMField &);
@@ -86,7 +89,6 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void choose_stabilize(const MPMPlan &);
   void step();
   void rest();
-  void warn_of_rotation();
 };
 
 }    // namespace LAMMPS_NS

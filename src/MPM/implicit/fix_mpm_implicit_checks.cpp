@@ -25,6 +25,12 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+/** Style and ID of a fix. */
+template <class Interface> static std::string name_of(Interface *of)
+{
+  const auto *const fix = dynamic_cast<Fix *>(of);
+  return fmt::format("fix {} {}", fix->style, fix->id);
+}
 
 bool FixMPMImplicit::has_pressure(MPMPhysics *physics, const MPMField &of)
 {
@@ -38,11 +44,10 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
   for (auto *other : plan.physics)
     if (dynamic_cast<MPMPorePressure *>(other) &&
         (time.kind == MPMTimeMethod::NEWMARK || time.kind == MPMTimeMethod::MIDPOINT))
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit solves for the pressure of fix {} {} at the end of a step, which "
-          "newmark and midpoint are not made of: use static or euler",
-          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit solves for the pressure of {} at the end of a step, which "
+                 "newmark and midpoint are not made of: use static or euler",
+                 name_of(other));
   check_transfer(of);
   check_stabilization(plan, of);
   check_physics(plan);
@@ -65,9 +70,9 @@ void FixMPMImplicit::check_physics(const MPMPlan &plan) const
         !dynamic_cast<MPMPorePressure *>(other))
       error->all(
           FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
-          "computes in explicit steps would not be in its balance: remove one of them",
-          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
+          "Fix mpm/implicit balances stress, inertia, and loads on points, and what {} computes in "
+          "explicit steps would not be in its balance: remove one of them",
+          name_of(other));
 }
 
 /** Points must move with the velocities that forces belong to. */
@@ -86,16 +91,15 @@ void FixMPMImplicit::check_transfer(MPMField &of) const
             !(options.transfer == FLIP && options.flip == 1.0),
         "this transfer",
         "points move with another velocity than they have at the end of the step: use transfer "
-        "flip 1.0, "
-        "or euler or midpoint instead"},
+        "flip 1.0, or euler or midpoint instead"},
        {time.kind == MPMTimeMethod::MIDPOINT &&
             !(options.transfer == FLIP && options.flip == 1.0) &&
             !(options.transfer == APIC && is_mls(options.shape, options.transfer) &&
               !options.strains_by_gradient() && !of.frame->is_total()),
         "this transfer",
         "points move with another velocity than they have at the end of the step: use transfer "
-        "flip "
-        "1.0, in the updated frame also transfer apic with shape quadratic or cubic and stress "
+        "flip 1.0, in the updated frame also transfer apic with shape quadratic or cubic and "
+        "stress "
         "mls"},
        {options.averages_strain(), "locking fbar and both",
         "their motions of points are not those that forces belong to: use locking pressure"},
@@ -119,8 +123,8 @@ void FixMPMImplicit::check_stabilization(const MPMPlan &plan, MPMField &of) cons
   for (auto *other : plan.physics)
     if (stabilize > 0.0 && has_pressure(other, of))
       error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit stabilize knows nothing of the pressure of fix {} {}: remove it",
-                 dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
+                 "Fix mpm/implicit stabilize knows nothing of the pressure of {}: remove it",
+                 name_of(other));
 }
 
 /** Forces of elements must be known after trial motions. */
@@ -140,9 +144,9 @@ void FixMPMImplicit::check_elements(const MPMPlan &plan, MPMField &of) const
     for (auto *other : plan.physics)
       if (has_pressure(other, of))
         error->all(FLERR, Error::NOLASTLINE,
-                   "Fix mpm/implicit cannot solve for the pressure of fix {} {} together with the "
+                   "Fix mpm/implicit cannot solve for the pressure of {} together with the "
                    "elements of fix mpm/elements {}: use explicit steps",
-                   dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id, elements->id);
+                   name_of(other), elements->id);
   }
 }
 
@@ -152,23 +156,21 @@ void FixMPMImplicit::check_actions(const MPMPlan &plan, const MPMField &of) cons
   bool rubs = false;
   for (auto *action : plan.actions) {
     if (action->is_projection()) continue;
-    const auto *const style = dynamic_cast<Fix *>(action)->style,
-                      *const name = dynamic_cast<Fix *>(action)->id;
+    const auto name = name_of(action);
     auto *const contact = action->trial_contact();
     if (!contact)
       error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit holds nodes by walls, and knows nothing of what fix {} {} does: "
+                 "Fix mpm/implicit holds nodes by walls, and knows nothing of what {} does: "
                  "use fix mpm/boundary, with a region that moves for a rigid body, or explicit "
                  "steps",
-                 style, name);
+                 name);
     for (auto *other : plan.physics)
       if (has_pressure(other, of))
         error->all(
             FLERR, Error::NOLASTLINE,
             "Fix mpm/implicit finds no contact and friction of walls together with the water "
-            "of fix {} {}, and fix {} {} has one of these: use stick, or slip without "
-            "friction",
-            dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id, style, name);
+            "of {}, and {} has one of these: use stick, or slip without friction",
+            name_of(other), name);
     rubs = rubs || (contact->has_friction() && contact->is_regularised());
   }
   if (slip > 0.0 && !rubs)

@@ -210,23 +210,9 @@ double FixMPMRelax::force_of_stress() const
 
 void FixMPMRelax::rest()
 {
-  if (!warned_of_rotation) warn_of_rotation();
+  if (!warned_of_rotation) warned_of_rotation = warn_of_mls_rotation(*this, fields);
   for (auto *field : fields) put_to_rest(*field, taken);
   damping.rest();
-}
-
-/** Once. */
-void FixMPMRelax::warn_of_rotation()
-{
-  for (const auto *field : fields) {
-    const double rotation = mls_rotation(*field);
-    if (!is_large_rotation(rotation)) continue;
-    warned_of_rotation = true;
-    if (comm->me == 0)
-      error->warning(FLERR, "Fix mpm/relax {}: {}", id,
-                     warning_of_mls_rotation(rotation, field->id()));
-    return;
-  }
 }
 
 /* ----------------------------------------------------------------------

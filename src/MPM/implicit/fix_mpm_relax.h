@@ -74,11 +74,10 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   bool falls = false;    // does the kinetic energy fall in this step?
   std::vector<MPMField *> fields;
   bool may_start_by_half = false;
-  bool warned_of_rotation = false;    // was it reported that rotated bodies yield with stress mls?
+  bool warned_of_rotation = false;    // of bodies that have turned, with stress mls
 
   void look();
   void rest();
-  void warn_of_rotation();
   bool can_start_by_half(const MPMPlan &) const;
   void start_by_half();
   double force_of_stress() const;

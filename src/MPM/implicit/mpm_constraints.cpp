@@ -11,7 +11,6 @@
 #include "contact/mpm_ties.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_plan.h"
-#include "field/mpm_trial_contact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +22,6 @@ static constexpr double PROJECTED = 1.0e-12;    // relative change by one more a
 static constexpr int MOST_REPEATS = 200;
 static constexpr double AT_ONCE = 0.1;    // node spacings up to which walls move their nodes alone
 static constexpr int ROUNDS = 2;    // in which friction of walls that press on each other is found
-// greatest asymmetry of tangents, for conjugate gradients
-static constexpr double SYMMETRIC = 1.0e-3;
 
 MPMConstraints::MPMConstraints(MPMSolvedNodes &nodes) : nodes(nodes) {}
 
@@ -247,11 +244,6 @@ bool MPMConstraints::has_regularized_friction() const
   });
 }
 
-bool MPMConstraints::fixes_pressing_forces(double asymmetry) const
-{
-  return bodies && asymmetry <= SYMMETRIC;
-}
-
 const double *MPMConstraints::slip_of(const std::vector<double> &u)
 {
   if (slip_offset.empty()) return u.data();
@@ -314,16 +306,6 @@ void MPMConstraints::subtract_friction_change(const double *du, double asymmetry
   for (int64_t k = 0; k < nodes.nreals(); k++) dforce[k] -= friction[k];
 }
 
-void MPMConstraints::add_friction_blocks(double *blocks) const
-{
-  for (auto *contact : contacts) contact->add_friction_blocks(blocks);
-}
-
-void MPMConstraints::add_friction_stiffness(double *stiffness) const
-{
-  for (auto *contact : contacts) contact->add_friction_stiffness(stiffness);
-}
-
 /* ----------------------------------------------------------------------
    contact
 ------------------------------------------------------------------------- */
@@ -336,49 +318,10 @@ bool MPMConstraints::update_active_set(const std::vector<double> &u, double unba
   return nodes.any(changed);
 }
 
-void MPMConstraints::correct(const double *du) const
-{
-  for (auto *contact : contacts) contact->correct(du);
-}
-
-void MPMConstraints::soften(double slip_width) const
-{
-  for (auto *contact : contacts) contact->soften(slip_width);
-}
-
-void MPMConstraints::check_positions() const
-{
-  for (auto *contact : contacts) contact->check_arrival();
-}
-
 bool MPMConstraints::find_carried_points(std::vector<double> &left) const
 {
   bool any = false;
   for (auto *contact : contacts)
     if (contact->find_carried(nodes.field, left)) any = true;
   return any;
-}
-
-void MPMConstraints::carry(double *force) const
-{
-  for (auto *contact : contacts) contact->constrain_carried(nodes.field, force);
-}
-
-void MPMConstraints::set_final_velocities(const double *v, double share) const
-{
-  for (auto *contact : contacts) contact->predict_velocities(v, share);
-}
-
-void MPMConstraints::take_stop() const
-{
-  for (auto *contact : contacts) contact->take_stop();
-}
-
-double MPMConstraints::memory_usage() const
-{
-  double bytes = 0.0;
-  for (const auto *list :
-       {&wall, &gap_closure, &velocity_of_walls, &slip_offset, &slipped, &friction, &room})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
 }

@@ -9,15 +9,21 @@
 #ifndef LMP_MPM_CONSTRAINTS_H
 #define LMP_MPM_CONSTRAINTS_H
 
-#include "implicit/mpm_solved_nodes.h"
+#include "field/mpm_trial_contact.h"
+#include "implicit/mpm_implicit_parts.h"
+#include "solve/node_constraints.h"
 
 #include <memory>
+#include <string>
 #include <vector>
+
+namespace MPM_NS {
+class LatticeRanks;
+}
 
 namespace LAMMPS_NS {
 class MPMBodyContact;
 class MPMTies;
-class MPMTrialContact;
 
 /** Constraints of an implicit step: the effect v -> P v + w of all node actions on velocities, and
  *  the contact and friction among them. Walls do no work on motions that P leaves free, so that P^T
@@ -64,11 +70,19 @@ class MPMConstraints {
    *  balance of forces has friction by the present pressing forces. The iterations converge to it
    *  if friction changes these forces by less than they change friction. asymmetry: of the
    *  tangents. */
-  bool fixes_pressing_forces(double asymmetry) const;
-  /** Adds the stiffness of friction to blocks [node][dim][dim]. */
-  void add_friction_blocks(double *blocks) const;
-  /** Adds the same as one number for each node. */
-  void add_friction_stiffness(double *stiffness) const;
+  bool fixes_pressing_forces(double asymmetry) const
+  {
+    return bodies && asymmetry <= MPMImplicitReport::SYMMETRIC;
+  }
+  /** Adds the stiffness of friction to blocks [node][dim][dim], or as one number for each node. */
+  void add_friction_blocks(double *blocks) const
+  {
+    for (auto *contact : contacts) contact->add_friction_blocks(blocks);
+  }
+  void add_friction_stiffness(double *stiffness) const
+  {
+    for (auto *contact : contacts) contact->add_friction_stiffness(stiffness);
+  }
 
   /** Moves u to what walls allow after this share of their way in the step. If that is far, u stays
    *  as it is and the way is added to prescribed: true, on all ranks. Collective. */
@@ -78,22 +92,40 @@ class MPMConstraints {
    *  Collective. */
   bool update_active_set(const std::vector<double> &u, double unbalanced);
   /** The correction du has been found. */
-  void correct(const double *du) const;
+  void correct(const double *du) const
+  {
+    for (auto *contact : contacts) contact->correct(du);
+  }
   /** Regularizes friction with this slip [distance]; 0: with its own. */
-  void soften(double slip_width) const;
+  void soften(double slip_width) const
+  {
+    for (auto *contact : contacts) contact->soften(slip_width);
+  }
   /** Points have moved: walls check the new positions. Collective. */
-  void check_positions() const;
+  void check_positions() const
+  {
+    for (auto *contact : contacts) contact->check_arrival();
+  }
 
   /** Points that walls carry as a whole, see MPMTrialContact::find_carried(); left [point]: share
    *  of their volume outside of walls. True if there may be any, on any rank. */
   bool find_carried_points(std::vector<double> &left) const;
   /** Walls carry these forces on nodes: finds where they do no work on free motions. */
-  void carry(double *force) const;
+  void carry(double *force) const
+  {
+    for (auto *contact : contacts) contact->constrain_carried(nodes.field, force);
+  }
   /** Sets the velocities that nodes will have when contacts act on them next, with this share of
    *  friction. */
-  void set_final_velocities(const double *v, double share) const;
+  void set_final_velocities(const double *v, double share) const
+  {
+    for (auto *contact : contacts) contact->predict_velocities(v, share);
+  }
   /** Contacts get the impulses of the last act(), which brought nodes to rest at walls. */
-  void take_stop() const;
+  void take_stop() const
+  {
+    for (auto *contact : contacts) contact->take_stop();
+  }
 
   bool any() const { return constrained; }
   bool has_contacts() const { return !contacts.empty(); }
@@ -114,7 +146,11 @@ class MPMConstraints {
    *  balance. */
   const std::vector<double> &friction_forces() const { return friction; }
   double friction_factor() const { return friction_share; }
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(wall, gap_closure, velocity_of_walls, slip_offset, slipped, friction,
+                            room);
+  }
 
  private:
   MPMSolvedNodes &nodes;
@@ -153,6 +189,18 @@ class MPMConstraints {
   const double *slip_of(const std::vector<double> &u);
   void find_friction(const std::vector<double> &u, const std::vector<double> &residual);
 };
+/** Statics: is there a body in the first field that no wall holds along the external forces
+ *  [node][dim] on it? Returns what is wrong, or nothing. Collective. */
+std::string find_free_body(MPMSolvedNodes &, MPMConstraints &, MPM_NS::LatticeRanks &,
+                           const std::vector<double> &external);
+
+/** Finds groups of nodes that walls hold together, along lines through surfaces and faces
+ *  (MPMLineTies), and the part of P within each group, from unit vectors of one node of each group
+ *  at a time. Where lines of several surfaces chain many nodes together along edges, each node has
+ *  the part of the nodes near it. The result has the nodes of this rank, in their order.
+ *  Collective. */
+std::vector<MPM_NS::NodeTie> find_tied_nodes(MPMSolvedNodes &, MPMConstraints &,
+                                             MPM_NS::LatticeRanks &);
 
 }    // namespace LAMMPS_NS
 #endif

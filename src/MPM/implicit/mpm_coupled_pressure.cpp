@@ -14,7 +14,7 @@
      K du - Q dp = f,   Q^T du + A dp = g.
 
    This is solved as a whole: in steps in which pore water first bears nearly all load and then
-   no_pressure, iterations between the two would converge slowly in one or the other. The solver is
+   none, iterations between the two would converge slowly in one or the other. The solver is
    GMRES, because flow through surfaces makes A unsymmetric. Its preconditioner is a step of the
    fixed-stress split (J. Kim, H.A. Tchelepi, R. Juanes, Comput. Methods Appl. Mech. Eng. 200 (2011)
    1591; J.A. White, N. Castelletto, H.A. Tchelepi, ibid. 303 (2016) 55): du = K^-1 f, and then dp =
@@ -24,10 +24,7 @@
    the stiffness of the water nor on the length of the step.
 
    The term a^2/M has to be the matrix of sums over points, sum_p V_p N_ip N_jp a^2/M, and not one
-   sum for each node: pressures that alternate from node to node are small between nodes (0.13 of
-   the mean square along a line, 0.0024 in space), and so is what the soil takes up of them. With
-   one sum for each node, a disc of 200 points of nearly incompressible water needed 45 iterations
-   of GMRES for six digits, and a sphere did not converge; the disc now needs 8.
+   sum for each node, as the soil hardly takes up pressures that alternate from node to node.
 
    The preconditioner needs a positive definite K, which K need not be: a fixed pressure pushes soil
    aside where the surface of the soil tilts under a load that does not tilt. In the plane, a
@@ -42,7 +39,6 @@
 
 #include "implicit/mpm_coupled_pressure.h"
 
-#include "atom.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_node_system.h"
@@ -50,6 +46,8 @@
 #include "implicit/mpm_force_balance.h"
 #include "implicit/mpm_motion_system.h"
 #include "implicit/mpm_solved_nodes.h"
+
+#include "atom.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,8 +66,7 @@ static constexpr double GAINED = 0.1;
 static constexpr double HELD = 1.0e-6;    // sum of squares that walls take of a unit motion
 // share of the tolerance, for pressures relative to stress
 static constexpr double SMALL = 1.0e-2;
-static constexpr double LEAST = 1.0e-15;               // of volumes: round-off
-static constexpr int WHOLE[] = {0, 0, 12000, 8500};    // as in mpm_motion_system.cpp
+static constexpr double LEAST = 1.0e-15;    // of volumes: round-off
 
 /** The equations of the pressure alone, as the levels see them. */
 class MPMCoupledPressure::Flow : public LinearSystem {
@@ -97,21 +94,13 @@ class MPMCoupledPressure::Flow : public LinearSystem {
 
 /* ---------------------------------------------------------------------- */
 
-MPMCoupledPressure::MPMCoupledPressure(MPMSolvedNodes &nodes, MPMForceBalance &balance,
-                                       MPMConstraints &constraints, MPMMotionSystem &motion,
-                                       const MPMImplicitOptions &options, MPMImplicitReport &report,
-                                       MPMImplicitTimes &times, MPMNodePressure &water) :
-    nodes(nodes),
-    balance(balance), constraints(constraints), motion(motion), options(options), report(report),
-    times(times), water(water), tangent(balance.tangent()),
+MPMCoupledPressure::MPMCoupledPressure(const MPMImplicitParts &parts, MPMMotionSystem &motion,
+                                       MPMNodePressure &water) :
+    MPMImplicitParts(parts),
+    motion(motion), water(water), tangent(balance.tangent()),
     levels(nodes.field.grid, motion.lattice_ranks(), 1, stencil_order(nodes.field.options.shape), 0,
-           WHOLE[nodes.width])
+           MPMMotionSystem::WHOLE[nodes.width])
 {
-}
-
-int64_t MPMCoupledPressure::nreals() const
-{
-  return nodes.nreals();
 }
 
 void MPMCoupledPressure::begin_step(double dt)
@@ -353,9 +342,7 @@ SolveReport MPMCoupledPressure::solve(const std::vector<double> &u,
 
 double MPMCoupledPressure::memory_usage() const
 {
-  double bytes = solver.memory_usage() + levels.memory_usage();
-  for (const auto *list : {&p, &kept, &unbalanced, &first, &correction, &rhs, &solution, &softness,
-                           &room, &no_pressure, &point_pressure, &dp, &dV})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return solver.memory_usage() + levels.memory_usage() +
+      bytes_of(p, kept, unbalanced, first, correction, rhs, solution, softness, room, no_pressure,
+               point_pressure, dp, dV);
 }

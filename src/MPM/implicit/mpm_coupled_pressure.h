@@ -9,30 +9,23 @@
 #ifndef LMP_MPM_COUPLED_PRESSURE_H
 #define LMP_MPM_COUPLED_PRESSURE_H
 
-#include "implicit/mpm_implicit_options.h"
-#include "implicit/mpm_implicit_report.h"
-#include "solve/flexible_gmres.h"
-#include "solve/linear_system.h"
+#include "implicit/mpm_implicit_parts.h"
+#include "solve/krylov.h"
 #include "solve/spline_multigrid.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
-class MPMConstraints;
-class MPMForceBalance;
 class MPMMotionSystem;
 class MPMNodePressure;
-class MPMSolvedNodes;
 class MPMTangent;
 
 /** The part of implicit steps that belongs to a pressure of nodes: its values p, the residual of
  *  its equations, and the joint linear system with the motion. Vectors of that system are
  *  [node][dim] displacements, followed by [node] pressures. */
-class MPMCoupledPressure : public MPM_NS::LinearSystem {
+class MPMCoupledPressure : public MPM_NS::LinearSystem, private MPMImplicitParts {
  public:
-  MPMCoupledPressure(MPMSolvedNodes &, MPMForceBalance &, MPMConstraints &, MPMMotionSystem &,
-                     const MPMImplicitOptions &, MPMImplicitReport &, MPMImplicitTimes &,
-                     MPMNodePressure &);
+  MPMCoupledPressure(const MPMImplicitParts &, MPMMotionSystem &, MPMNodePressure &);
 
   /** Start and end of a step of duration dt. */
   void begin_step(double dt);
@@ -73,13 +66,7 @@ class MPMCoupledPressure : public MPM_NS::LinearSystem {
  private:
   class Flow;    // the pressure alone, for its multigrid levels
 
-  MPMSolvedNodes &nodes;
-  MPMForceBalance &balance;
-  MPMConstraints &constraints;
   MPMMotionSystem &motion;
-  const MPMImplicitOptions &options;
-  MPMImplicitReport &report;
-  MPMImplicitTimes &times;
   MPMNodePressure &water;
   MPMTangent &tangent;
   MPM_NS::FlexibleGMRES solver{60};
@@ -102,7 +89,7 @@ class MPMCoupledPressure : public MPM_NS::LinearSystem {
   std::vector<std::vector<double>> free_axes;
 
   int64_t nnodes() const { return (int64_t) p.size(); }
-  int64_t nreals() const;
+  int64_t nreals() const { return nodes.nreals(); }
   int64_t size() const override { return nreals() + nnodes(); }
   void apply(const double *x, double *y) override;
   void precondition(const double *r, double *z) override;

@@ -15,8 +15,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double ROUND_OFF = 2.0e-16;    // of strains, which limits the accuracy of forces
-
 MPMForceBalance::MPMForceBalance(MPMSolvedNodes &nodes, const MPMTimeMethod &time) :
     nodes(nodes), time(time)
 {
@@ -213,10 +211,8 @@ double MPMForceBalance::find_stabilizing_forces(const std::vector<double> &u)
 
 double MPMForceBalance::memory_usage() const
 {
-  double bytes = 0.0;
-  for (const auto *list : {&external, &predictor, &loads, &load_changes, &stabilizing_forces,
-                           &internal, &partial, &blocks_of_body, &start_forces})
-    bytes += list->capacity() * sizeof(double);
+  double bytes = bytes_of(external, predictor, loads, load_changes, stabilizing_forces, internal,
+                          partial, blocks_of_body, start_forces);
   for (const auto &tangent : tangents) bytes += tangent->memory_usage();
   for (const auto &stabilization : stabilizations) bytes += stabilization->memory_usage();
   return bytes;

@@ -31,6 +31,8 @@ namespace LAMMPS_NS {
  *  are in units of mass times acceleration. */
 class MPMForceBalance {
  public:
+  /** Round-off of strains, which limits the accuracy of forces. */
+  static constexpr double ROUND_OFF = 2.0e-16;
   MPMForceBalance(MPMSolvedNodes &, const MPMTimeMethod &);
 
   /** Start of a run. */

@@ -13,17 +13,15 @@
    free axes.
 ------------------------------------------------------------------------- */
 
-#include "implicit/mpm_free_bodies.h"
-
-#include "comm.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
+#include "implicit/mpm_constraints.h"
+#include "math/sets.h"
+#include "solve/lattice_ranks.h"
+
+#include "comm.h"
 #include "fmt/format.h"
 #include "force.h"
-#include "implicit/mpm_constraints.h"
-#include "implicit/mpm_solved_nodes.h"
-#include "math/sets.h"
-#include "solve/lattice_key.h"
 
 #include <Eigen/Dense>
 
@@ -34,9 +32,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double HELD = 1.0e-12;    // mean square of what walls take from a motion
-static constexpr double CANCELS =
-    1.0e-6;    // sum of forces, over the sum of their sizes, that counts as zero
+static constexpr double HELD = 1.0e-12;      // mean square of what walls take from a motion
+static constexpr double CANCELS = 1.0e-6;    // sum of forces over that of their sizes: zero
 
 namespace {
 

@@ -10,7 +10,6 @@
 
 #include "field/mpm_forces.h"
 #include "field/mpm_plan.h"
-#include "implicit/mpm_free_bodies.h"
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -21,9 +20,8 @@ MPMImplicit::MPMImplicit(LAMMPS *lmp, const std::vector<MPMField *> &fields,
                          const MPMImplicitOptions &options, MPMPointAccelerations &kept) :
     options(options),
     stabilize(options.stabilize), nodes(lmp, fields), balance(nodes, options.time),
-    constraints(nodes), system(nodes, balance, constraints, options, now, times),
-    newton(nodes, balance, constraints, system, options, now, times),
-    factors(nodes, balance, constraints, system, newton, options, now, times),
+    constraints(nodes), parts{nodes, balance, constraints, options, now, times}, system(parts),
+    newton(parts, system), factors(parts, system, newton),
     motion(nodes, balance, constraints, newton, options.time, kept)
 {
 }
@@ -37,8 +35,7 @@ void MPMImplicit::init()
   pressure.reset();
   for (auto *water : nodes.field.plan->pore_pressures)
     if (auto *const of_nodes = water->node_pressure(nodes.field))
-      pressure = std::make_unique<MPMCoupledPressure>(nodes, balance, constraints, system, options,
-                                                      now, times, *of_nodes);
+      pressure = std::make_unique<MPMCoupledPressure>(parts, system, *of_nodes);
 }
 
 /** Can factors of tangents serve several steps of this run? */

@@ -12,12 +12,9 @@
 #include "implicit/mpm_constraints.h"
 #include "implicit/mpm_coupled_pressure.h"
 #include "implicit/mpm_force_balance.h"
-#include "implicit/mpm_implicit_options.h"
-#include "implicit/mpm_implicit_report.h"
 #include "implicit/mpm_kept_factors.h"
 #include "implicit/mpm_motion_system.h"
 #include "implicit/mpm_newton.h"
-#include "implicit/mpm_solved_nodes.h"
 #include "implicit/mpm_step_motion.h"
 
 #include <memory>
@@ -72,6 +69,7 @@ class MPMImplicit {
   MPMSolvedNodes nodes;
   MPMForceBalance balance;
   MPMConstraints constraints;
+  const MPMImplicitParts parts;
   MPMMotionSystem system;
   MPMNewton newton;
   MPMKeptFactors factors;

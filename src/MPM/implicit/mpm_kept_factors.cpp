@@ -40,20 +40,15 @@ using namespace MPM_NS;
 using Clock = MPMImplicitTimes::Clock;
 
 static constexpr double SAME = 1.0e-10;         // difference of what walls leave free
-static constexpr double SYMMETRIC = 1.0e-3;     // greatest asymmetry of tangents
-static constexpr double ROUND_OFF = 2.0e-16;    // of strains, which limits the accuracy of forces
 static constexpr int COST = 20;                 // of making factors, in iterations
 static constexpr int MOST_FACTORS = 3;          // factorizations in a step
 static constexpr int MOST_WITH_FACTORS = 25;    // iterations in a step
 static constexpr std::size_t MOTIONS = 2;       // of former steps that are kept
 
-MPMKeptFactors::MPMKeptFactors(MPMSolvedNodes &nodes, MPMForceBalance &balance,
-                               MPMConstraints &constraints, MPMMotionSystem &system,
-                               MPMNewton &newton, const MPMImplicitOptions &options,
-                               MPMImplicitReport &report, MPMImplicitTimes &times) :
-    nodes(nodes),
-    balance(balance), constraints(constraints), system(system), newton(newton), options(options),
-    report(report), times(times), tangent(balance.tangent()), shared(system.lattice_ranks())
+MPMKeptFactors::MPMKeptFactors(const MPMImplicitParts &parts, MPMMotionSystem &system,
+                               MPMNewton &newton) :
+    MPMImplicitParts(parts),
+    system(system), newton(newton), tangent(balance.tangent()), shared(system.lattice_ranks())
 {
 }
 
@@ -111,12 +106,7 @@ void MPMKeptFactors::check()
     if (all[NODES] && all[WALLS]) return;
   }
   std::vector<LatticeIndex> indices;
-  for (const int64_t node : nodes.active) {
-    nodes.field.grid.node_index(node, index);
-    indices.push_back({0, 0, 0});
-    for (int d = 0; d < nodes.width; d++)
-      indices.back()[d] = nodes.field.grid.lattice.wrap(d, index[d]);
-  }
+  for (const int64_t node : nodes.active) indices.push_back(nodes.index_of(node));
   // ranks may now own other nodes of the same set
   if (kept.known && dt == kept.dt && all[WALLS] && shared.renumber(indices, nodes.nowned)) {
     kept.nodes.swap(blocks);
@@ -190,7 +180,7 @@ bool MPMKeptFactors::make_factors(const std::vector<double> &u)
   }
   tangent.keep_deformations(false);
   kept.asymmetry = tangent.asymmetry();
-  if (kept.asymmetry > SYMMETRIC) return false;
+  if (kept.asymmetry > MPMImplicitReport::SYMMETRIC) return false;
   // earlier factors, if any, were for the same nodes and walls
   system.make_levels(kept.structured);
   kept.structured = true;
@@ -256,7 +246,7 @@ void MPMKeptFactors::solve_with_factors()
       if (to >= 0) whole[w * to + d] = forces[w * k + d];
     }
   }
-  system.levels()->solve_whole(whole.data());
+  system.levels()->solve_whole(whole);
   for (std::size_t k = 0; k < n; k++)
     if (const int from = kept.in_factors[k]; from >= 0)
       std::copy_n(&whole[w * from], w, &solved[w * k]);
@@ -310,8 +300,8 @@ bool MPMKeptFactors::iterate(std::vector<double> &u)
   double size;
   int made = 0, with_these = 0;
   report.residuals.clear();
-  // overall, a step costs least if factors are made again as soon
-  // as a step costs more than the mean of those before
+  // overall, a step costs least if factors are made again as soon as a step costs more than the
+  // mean of those before
   if (kept.factorized && kept.steps > 0 && kept.last * kept.steps > kept.iterations + COST)
     kept.drop_factors();
   turns.clear();
@@ -325,7 +315,7 @@ bool MPMKeptFactors::iterate(std::vector<double> &u)
     report.residuals.push_back(report.unbalanced);
     const double enough =
         std::max({options.tolerance * size, options.absolute * nodes.lmp->force->ftm2v,
-                  ROUND_OFF * kept.stiffness});
+                  MPMForceBalance::ROUND_OFF * kept.stiffness});
     if (report.unbalanced <= enough) break;
     if (!kept.factorized || with_these >= MOST_WITH_FACTORS) {
       if (made == MOST_FACTORS || !make_factors(u)) return false;
@@ -354,8 +344,6 @@ bool MPMKeptFactors::iterate(std::vector<double> &u)
   return true;
 }
 
-/** Solves the step with what earlier steps have left. False, with u as it was, if this does not
- *  lead to its end. */
 bool MPMKeptFactors::solve(std::vector<double> &u, double step_dt)
 {
   dt = step_dt;
@@ -381,9 +369,6 @@ bool MPMKeptFactors::solve(std::vector<double> &u, double step_dt)
 
 double MPMKeptFactors::memory_usage() const
 {
-  double bytes = kept.memory_usage() + shared.memory_usage();
-  for (const auto *list :
-       {&turns, &rotations, &owned, &gathered, &whole, &forces, &moved, &solved, &corrected})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return kept.memory_usage() + shared.memory_usage() +
+      bytes_of(turns, rotations, owned, gathered, whole, forces, moved, solved, corrected);
 }

@@ -17,19 +17,22 @@
 
 #include "implicit/mpm_mls_rotation.h"
 
-#include "atom.h"
 #include "base/mpm_points.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
-#include "lammps.h"
 #include "transfer/kernels.h"
 
-#include "fmt/format.h"
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "fix.h"
+#include "lammps.h"
 
 #include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+static constexpr double LARGE = 0.02;    // rotation of which it is warned [rad]
 
 double LAMMPS_NS::mls_rotation(const MPMField &field)
 {
@@ -56,12 +59,20 @@ double LAMMPS_NS::mls_rotation(const MPMField &field)
   return all[1] > 0.0 ? all[0] / all[1] : 0.0;
 }
 
-std::string LAMMPS_NS::warning_of_mls_rotation(double turn, const std::string &field)
+bool LAMMPS_NS::warn_of_mls_rotation(const Fix &fix, const std::vector<MPMField *> &fields)
 {
-  return fmt::format(
-      "points have turned by {:.2g} on average, and with stress mls in the updated "
-      "frame bodies whose surfaces are inclined to the lattice give way a little "
-      "more in each step: a beam of 4 cells bends 6 to 16 % too far. Use frame total "
-      "or shape cpdi2 of fix mpm {}, or stress gradient, which does so less",
-      turn, field);
+  for (const auto *field : fields) {
+    const double turn = mls_rotation(*field);
+    if (!(turn > LARGE)) continue;
+    if (field->lmp->comm->me == 0)
+      field->lmp->error->warning(
+          FLERR,
+          "Fix {} {}: points have turned by {:.2g} on average, and with stress mls in the updated "
+          "frame bodies whose surfaces are inclined to the lattice give way a little "
+          "more in each step: a beam of 4 cells bends 6 to 16 % too far. Use frame total "
+          "or shape cpdi2 of fix mpm {}, or stress gradient, which does so less",
+          fix.style, fix.id, turn, field->id());
+    return true;
+  }
+  return false;
 }

@@ -9,9 +9,10 @@
 #ifndef LMP_MPM_MLS_ROTATION_H
 #define LMP_MPM_MLS_ROTATION_H
 
-#include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
+class Fix;
 class MPMField;
 
 /** Measure of an error of statics for bodies that have turned while forces use moving least squares
@@ -19,14 +20,9 @@ class MPMField;
  *  averaged with the equivalent stress as weight; 0 with other forces. Collective. */
 double mls_rotation(const MPMField &);
 
-/** Is this rotation large enough for a warning? */
-inline bool is_large_rotation(double rotation)
-{
-  return rotation > 0.02;
-}
-
-/** Text of the warning about it, without its beginning. field: ID of the fix mpm. */
-std::string warning_of_mls_rotation(double turn, const std::string &field);
+/** Warns of the first field whose points have turned so far that this error is large. Returns
+ *  whether there is one. Collective. */
+bool warn_of_mls_rotation(const Fix &, const std::vector<MPMField *> &);
 
 }    // namespace LAMMPS_NS
 #endif

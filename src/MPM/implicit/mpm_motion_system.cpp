@@ -10,7 +10,7 @@
 
 #include "implicit/mpm_constraints.h"
 #include "implicit/mpm_force_balance.h"
-#include "implicit/mpm_tied_nodes.h"
+#include "implicit/mpm_solved_nodes.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -23,41 +23,23 @@ using namespace MPM_NS;
 using Clock = MPMImplicitTimes::Clock;
 
 static constexpr double PROJECTED = 1.0e-12;    // entries of projections that are not round-off
-// greatest asymmetry of tangents, for conjugate gradients
-static constexpr double SYMMETRIC = 1.0e-3;
 // iterations in which GMRES must gain something, and share of the residual that may be left
 static constexpr int TURN = 1000;
 static constexpr double GAIN = 0.9;
 // iterations up to which levels are kept for the next tangents
 static constexpr int DO_WELL = 15;
 static constexpr int TOO_OLD = 300;    // iterations with old levels, after which new ones are tried
-// largest system, by dimension, that is factorized as a whole, which is faster than levels
-static constexpr int WHOLE[] = {0, 0, 12000, 8500};
-// the same with averages of the pressure, for which levels need many iterations
+// as MPMMotionSystem::WHOLE, with averages of the pressure, for which levels need many iterations
 static constexpr int WHOLE_WITH_AVERAGES[] = {0, 0, 60000, 15000};
 
-MPMMotionSystem::MPMMotionSystem(MPMSolvedNodes &nodes, MPMForceBalance &balance,
-                                 MPMConstraints &constraints, const MPMImplicitOptions &options,
-                                 MPMImplicitReport &report, MPMImplicitTimes &times) :
-    nodes(nodes),
-    balance(balance), constraints(constraints), options(options), report(report), times(times),
-    ranks(nodes.lmp, nodes.field.grid, *nodes.field.nodes.halo),
+MPMMotionSystem::MPMMotionSystem(const MPMImplicitParts &parts) :
+    MPMImplicitParts(parts), ranks(nodes.lmp, nodes.field.grid, *nodes.field.nodes.halo),
     averages(nodes.field.options.averages_stress())
 {
   if (options.preconditioner == MPMImplicitOptions::MULTIGRID)
     multigrid = std::make_unique<SplineMultigrid>(
         nodes.field.grid, ranks, nodes.width, stencil_order(nodes.field.options.shape), 0,
         (averages ? WHOLE_WITH_AVERAGES : WHOLE)[nodes.width]);
-}
-
-int64_t MPMMotionSystem::size() const
-{
-  return nodes.nreals();
-}
-
-void MPMMotionSystem::products(int n, const double *const *a, const double *const *b, double *value)
-{
-  nodes.products(n, a, b, value);
 }
 
 void MPMMotionSystem::apply(const double *x, double *y)
@@ -235,7 +217,7 @@ SolveReport MPMMotionSystem::solve(const double *b, double *x, const SolveGoal &
     auto within = goal;
     within.most_iterations = std::min(most, goal.most_iterations);
     std::fill_n(x, nodes.nreals(), 0.0);
-    const bool symmetric = report.asymmetry <= SYMMETRIC &&
+    const bool symmetric = report.asymmetry <= MPMImplicitReport::SYMMETRIC &&
         (!constraints.rubs() || constraints.fixes_pressing_forces(report.asymmetry)) &&
         !(multigrid && averages);
     return symmetric ? conjugate_gradients.solve(*this, b, x, within) : solve_general(b, x, within);
@@ -254,8 +236,8 @@ SolveReport MPMMotionSystem::solve(const double *b, double *x, const SolveGoal &
     }
     report.linear += solved.iterations;
     by_levels = false;
-    if (made)
-      break;    // new levels of tangents that are not positive definite are of no use, either
+    // new levels of tangents that are not positive definite are of no use, either
+    if (made) break;
   }
   by_levels = false;
   find_blocks();
@@ -266,6 +248,5 @@ SolveReport MPMMotionSystem::solve(const double *b, double *x, const SolveGoal &
 double MPMMotionSystem::memory_usage() const
 {
   return conjugate_gradients.memory_usage() + gmres.memory_usage() +
-      (multigrid ? multigrid->memory_usage() : 0.0) +
-      (blocks.capacity() + allowed.capacity()) * sizeof(double);
+      (multigrid ? multigrid->memory_usage() : 0.0) + bytes_of(blocks, allowed);
 }

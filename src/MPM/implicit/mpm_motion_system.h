@@ -10,37 +10,36 @@
 #define LMP_MPM_MOTION_SYSTEM_H
 
 #include "field/mpm_node_system.h"
-#include "implicit/mpm_implicit_options.h"
-#include "implicit/mpm_implicit_report.h"
-#include "solve/flexible_gmres.h"
+#include "implicit/mpm_implicit_parts.h"
 #include "solve/krylov.h"
-#include "solve/linear_system.h"
 #include "solve/spline_multigrid.h"
 
 #include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
-class MPMConstraints;
-class MPMForceBalance;
-class MPMSolvedNodes;
 
 /** The linear system of an iteration for the motion, P^T (c m + K) P with K = -df_int/du, its
  *  preconditioners, and its solution by conjugate gradients or, where tangents are not symmetric,
  *  by GMRES. The preconditioner is either the inverse of the diagonal block of each node, or levels
  *  of lattices, which are the factors of the whole matrix where it is small. */
-class MPMMotionSystem : public MPM_NS::LinearSystem {
+class MPMMotionSystem : public MPM_NS::LinearSystem, private MPMImplicitParts {
  public:
-  MPMMotionSystem(MPMSolvedNodes &, MPMForceBalance &, MPMConstraints &, const MPMImplicitOptions &,
-                  MPMImplicitReport &, MPMImplicitTimes &);
+  /** Largest system, by dimension, that is factorized as a whole, which is faster than levels. */
+  static constexpr int WHOLE[] = {0, 0, 12000, 8500};
+
+  explicit MPMMotionSystem(const MPMImplicitParts &);
 
   /** Finds the correction x for the forces b, with the present tangents. Collective. */
   MPM_NS::SolveReport solve(const double *b, double *x, const MPM_NS::SolveGoal &);
 
-  int64_t size() const override;
+  int64_t size() const override { return nodes.nreals(); }
   void apply(const double *x, double *y) override;
   void precondition(const double *r, double *z) override;
-  void products(int n, const double *const *a, const double *const *b, double *value) override;
+  void products(int n, const double *const *a, const double *const *b, double *value) override
+  {
+    nodes.products(n, a, b, value);
+  }
 
   /** Levels of lattices, or factors; null: blocks of nodes are the only preconditioner. */
   MPM_NS::SplineMultigrid *levels() { return multigrid.get(); }
@@ -54,12 +53,6 @@ class MPMMotionSystem : public MPM_NS::LinearSystem {
   double memory_usage() const;
 
  private:
-  MPMSolvedNodes &nodes;
-  MPMForceBalance &balance;
-  MPMConstraints &constraints;
-  const MPMImplicitOptions &options;
-  MPMImplicitReport &report;
-  MPMImplicitTimes &times;
   MPMLatticeRanks ranks;
   MPM_NS::ConjugateGradients conjugate_gradients;
   MPM_NS::FlexibleGMRES gmres{100};

@@ -43,15 +43,6 @@ static constexpr int MOST_SHORTER = 5;    // halvings of a joint correction
 // growth of the residual with a joint correction that is taken all the same
 static constexpr double LARGER = 2.0;
 
-MPMNewton::MPMNewton(MPMSolvedNodes &nodes, MPMForceBalance &balance, MPMConstraints &constraints,
-                     MPMMotionSystem &system, const MPMImplicitOptions &options,
-                     MPMImplicitReport &report, MPMImplicitTimes &times) :
-    nodes(nodes),
-    balance(balance), constraints(constraints), system(system), options(options), report(report),
-    times(times)
-{
-}
-
 void MPMNewton::begin_step(double step_dt, MPMCoupledPressure *of_nodes)
 {
   dt = step_dt;
@@ -402,13 +393,4 @@ void MPMNewton::solve_in_parts(std::vector<double> &u)
       if (pressure) pressure->set_first();
     }
   }
-}
-
-double MPMNewton::memory_usage() const
-{
-  double bytes = 0.0;
-  for (const auto *list :
-       {&unbalanced, &free, &du, &correction, &trial, &prescribed, &inertia_forces})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
 }

@@ -9,30 +9,28 @@
 #ifndef LMP_MPM_NEWTON_H
 #define LMP_MPM_NEWTON_H
 
-#include "implicit/mpm_implicit_options.h"
-#include "implicit/mpm_implicit_report.h"
+#include "implicit/mpm_implicit_parts.h"
 #include "solve/krylov.h"
 
 #include <vector>
 
 namespace LAMMPS_NS {
-class MPMConstraints;
 class MPMCoupledPressure;
-class MPMForceBalance;
 class MPMMotionSystem;
-class MPMSolvedNodes;
 
 /** Newton's method for the displacements u of an implicit step,
  *      P^T r(u) = 0,   u = P u + dt w
  *  with the residual r of MPMForceBalance, and P and w of MPMConstraints. It has the line search,
  *  updates of the active set of contacts, and a division of the step into parts where it does not
  *  converge at once. */
-class MPMNewton {
+class MPMNewton : private MPMImplicitParts {
  public:
   enum Outcome { CONVERGED, FAILED, HOPELESS };    ///< HOPELESS: parts of the step would fail, too
 
-  MPMNewton(MPMSolvedNodes &, MPMForceBalance &, MPMConstraints &, MPMMotionSystem &,
-            const MPMImplicitOptions &, MPMImplicitReport &, MPMImplicitTimes &);
+  MPMNewton(const MPMImplicitParts &parts, MPMMotionSystem &system) :
+      MPMImplicitParts(parts), system(system)
+  {
+  }
 
   /** Start of a step of duration dt. pressure: that of nodes, which is found together with u; null:
    *  none. */
@@ -61,16 +59,13 @@ class MPMNewton {
   /** Correction of the last line search, and its share s. */
   const std::vector<double> &last_correction() const { return correction; }
   double last_share() const { return share; }
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(unbalanced, free, du, correction, trial, prescribed, inertia_forces);
+  }
 
  private:
-  MPMSolvedNodes &nodes;
-  MPMForceBalance &balance;
-  MPMConstraints &constraints;
   MPMMotionSystem &system;
-  const MPMImplicitOptions &options;
-  MPMImplicitReport &report;
-  MPMImplicitTimes &times;
   MPMCoupledPressure *pressure = nullptr;
 
   double dt = 0.0;

@@ -146,12 +146,3 @@ void MPMNodeStabilization::each_term(
     begin = end;
   }
 }
-
-double MPMNodeStabilization::memory_usage() const
-{
-  double bytes = points.capacity() * sizeof(Point) + nodes.capacity() * sizeof(Node) +
-      reached.capacity() * sizeof(reached[0]);
-  for (const auto *list : {&lacks, &stiffness, &motion, &more, &left})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
-}

@@ -11,6 +11,7 @@
 
 #include "field/mpm_stencil.h"
 #include "pointers.h"
+#include "solve/bytes_of.h"
 
 #include <functional>
 #include <vector>
@@ -52,7 +53,10 @@ class MPMNodeStabilization : protected Pointers {
   void
   each_term(const std::function<void(int, const int64_t *, int, const double *, const double *)> &f)
       const;
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(points, nodes, reached, lacks, stiffness, motion, more, left);
+  }
 
  private:
   /** A node as seen by a point: its index in vectors, N, N s, and r. */

@@ -8,7 +8,6 @@
 
 #include "implicit/mpm_solved_nodes.h"
 
-#include "field/mpm_node_system.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 
@@ -25,11 +24,6 @@ MPMSolvedNodes::MPMSolvedNodes(LAMMPS *lmp, const std::vector<MPMField *> &field
     lmp(lmp), field(*fields[0]), width(field.lattice.dim)
 {
   for (auto *one : fields) bodies.push_back({*one});
-}
-
-void MPMSolvedNodes::init()
-{
-  by_reach = field.domains || !field.elements.empty();
 }
 
 void MPMSolvedNodes::begin_step()
@@ -135,16 +129,6 @@ double MPMSolvedNodes::product(const double *a, const double *b)
   return value;
 }
 
-double MPMSolvedNodes::norm(const double *a)
-{
-  return std::sqrt(product(a, a));
-}
-
-void MPMSolvedNodes::sum_in_order(int n, const double *mine, double *all)
-{
-  LAMMPS_NS::sum_in_order(lmp, n, mine, of_ranks, all);
-}
-
 bool MPMSolvedNodes::any(bool mine) const
 {
   int is = mine, all;
@@ -198,12 +182,4 @@ double MPMSolvedNodes::mean_size(const std::vector<double> &u) const
   });
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, lmp->world);
   return all[1] > 0.0 ? std::sqrt(all[0] / all[1]) : 0.0;
-}
-
-double MPMSolvedNodes::memory_usage() const
-{
-  double bytes = active.capacity() * sizeof(int64_t) + active_records.capacity() * sizeof(double *);
-  for (const auto *list : {&mass, &start_velocity, &explicit_velocity, &reach})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
 }

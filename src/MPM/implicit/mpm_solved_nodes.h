@@ -10,8 +10,11 @@
 #define LMP_MPM_SOLVED_NODES_H
 
 #include "field/mpm_field.h"
-#include "solve/lattice_key.h"
+#include "field/mpm_node_system.h"
+#include "solve/bytes_of.h"
+#include "solve/lattice_nodes.h"
 
+#include <cmath>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
@@ -35,7 +38,7 @@ class MPMSolvedNodes {
   MPMSolvedNodes(class LAMMPS *, const std::vector<MPMField *> &);
 
   /** Start of a run. */
-  void init();
+  void init() { by_reach = field.domains || !field.elements.empty(); }
   /** Start of a step: reads masses and velocities from the records of nodes. Collective. */
   void begin_step();
   /** Restores the records of nodes, which hold trial motions during the step, to the start of the
@@ -69,9 +72,12 @@ class MPMSolvedNodes {
   /** value[k] = a[k] . b[k] for n pairs of vectors. Collective. */
   void products(int n, const double *const *a, const double *const *b, double *value);
   double product(const double *a, const double *b);
-  double norm(const double *a);
+  double norm(const double *a) { return std::sqrt(product(a, a)); }
   /** Sums of mine [n] over ranks, added in their order. Collective. */
-  void sum_in_order(int n, const double *mine, double *all);
+  void sum_in_order(int n, const double *mine, double *all)
+  {
+    LAMMPS_NS::sum_in_order(lmp, n, mine, of_ranks, all);
+  }
   /** Is this true on any rank? Collective. */
   bool any(bool mine) const;
   /** The largest value of all ranks. Collective. */
@@ -112,7 +118,10 @@ class MPMSolvedNodes {
     else
       all(std::integral_constant<int, 3>());
   }
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return MPM_NS::bytes_of(active, active_records, mass, start_velocity, explicit_velocity, reach);
+  }
 
  private:
   bool by_reach = false;        // are forces of nodes weighted by reach?

@@ -9,8 +9,7 @@
 #ifndef LMP_MPM_STEP_MOTION_H
 #define LMP_MPM_STEP_MOTION_H
 
-#include "implicit/mpm_affine_midpoint.h"
-#include "implicit/mpm_point_accelerations.h"
+#include "implicit/mpm_point_motion.h"
 #include "implicit/mpm_time_method.h"
 
 #include <vector>
@@ -60,12 +59,17 @@ class MPMStepMotion {
   std::vector<double> velocity;               // that points move with
   std::vector<double> impulse;    // that does not come from the forces of the start of the step
 
-  // contact in methods of second order (mpm_step_contact.cpp)
+  // contact in methods of second order
 
   bool impacts = false;                   // walls separate, or have friction
   std::vector<double> mapped;             // accelerations that points bring to nodes
   std::vector<double> ending, stopped;    // velocities at the end, before and after walls
-  bool accelerates_by_friction() const;
+  /** Is friction part of the accelerations at both ends? In the first step the friction at its
+   *  start is unknown. */
+  bool accelerates_by_friction() const
+  {
+    return impacts && time.keeps_acceleration() && kept.known;
+  }
   void set_friction();
   void end_contact(const std::vector<double> &u);
 

@@ -19,31 +19,24 @@
 #include "base/mpm_points.h"
 #include "elements/fix_mpm_elements.h"
 #include "field/fix_mpm_material.h"
-#include "field/mpm_field.h"
 #include "field/mpm_forces.h"
-#include "field/mpm_frame.h"
 #include "field/mpm_interfaces.h"
-#include "field/mpm_passes.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_time_limit.h"
-#include "force.h"
-#include "implicit/mpm_tangent_gather.h"
-#include "material/batch_kernels.h"
 #include "math/matrix.h"
+#include "solve/bytes_of.h"
+
+#include "force.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-/* ---------------------------------------------------------------------- */
-
 MPMTangent::MPMTangent(LAMMPS *lmp, MPMField &field) :
-    Pointers(lmp), field(field), with(), batch(new Batch()), tangent(new Tangent()),
-    dim(field.lattice.dim), nL(dim * dim), nH(nL + field.options.axisymmetric), means(field),
+    MPMTrialMotion(lmp, field), tangent(new Tangent()), means(field),
     averages(field.options.averages_stress())
 {
 }
@@ -52,156 +45,33 @@ MPMTangent::~MPMTangent() noexcept = default;
 
 void MPMTangent::init()
 {
-  const auto &options = field.options;
-  // forces and gradients are those of these two, which are fast in the total frame, too
-  mls = is_mls(options.shape, options.transfer) && !options.strains_by_gradient();
-  const Transfer transfer = mls ? APIC : (has_domain(options.shape) ? options.transfer : PIC);
-  with = field.kernels->transfer_total(dim, options.shape, transfer, true);
-  // there are no fast ones for what fix mpm has in the updated frame only
-  if (!with.p2g_force)
-    with = MPMKernels::select("reference")->transfer_total(dim, options.shape, transfer, true);
+  MPMTrialMotion::init();
   between.assign(field.elements.begin(), field.elements.end());
   if (averages) means.init(false, false);
   nelements = between.size();
   for (auto *load : field.plan->loads)
     if (auto *const forces = load->trial_forces(field)) between.push_back(forces);
-  *batch = {};
-  batch->h = field.lattice.h;
   int nhistory = 1;
   for (const auto *material : field.materials) nhistory = std::max(nhistory, material->nhistory);
   history.assign((std::size_t) nhistory * BATCH, 0.0);
 }
 
-/* ----------------------------------------------------------------------
-   from points to nodes: P and hoop_stress, and other forces on points
-------------------------------------------------------------------------- */
-
-void MPMTangent::scatter(const double *forces_of_points, double *force)
-{
-  PointRows rows = field.rows();
-  rows.P = P.data();
-  rows.F = nullptr;
-  rows.f = forces_of_points;
-  if (nH > nL) {    // hoop stress is a force on points, in units of force
-    forces_on_points.resize(3 * (std::size_t) atom->nmax);
-    const double unit = 1.0 / this->force->nktv2p;
-    for (const auto &run : field.map->runs)
-      for (bigint i = run.first; i < run.last; i++) {
-        std::copy_n(forces_of_points + 3 * i, 3, &forces_on_points[3 * i]);
-        forces_on_points[3 * i] -=
-            unit * rows.vol0[i] * hoop_stress[i] / field.frame->radius((int) i, rows.x[3 * i]);
-      }
-    rows.f = forces_on_points.data();
-  }
-  const TransferStep step = field.step_data();
-  points_to(nodes, field, with, [&](const MPMPointMap::Run &run, const int *base, int *box) {
-    with.p2g_force(rows, step, run.first, run.last, base, field.map->tile, box);
-  });
-  field.nodes.sum(nodes.data(), with.nreal, 4, 4);
-  const auto take = [&](auto constant) {
-    constexpr int D = decltype(constant)::value;
-    const double *record = nodes.data() + 4;
-    const int64_t end = D * field.grid.nnodes();
-    for (int64_t k = 0; k < end; k += D, record += with.nreal) std::copy_n(record, D, force + k);
-  };
-  if (dim == 2)
-    take(std::integral_constant<int, 2>());
-  else
-    take(std::integral_constant<int, 3>());
-}
-
-/** Displacements of points by the motion u. */
-void MPMTangent::move_points(const double *u)
-{
-  nodes.assign(field.grid.nnodes() * with.nreal, 0.0);
-  for (int64_t n = 0; n < field.grid.nnodes(); n++)
-    for (int d = 0; d < dim; d++) nodes[with.nreal * n + d] = u[dim * n + d];
-  field.nodes.complete(nodes.data(), with.nreal, 3);
-  point_motion.assign(3 * (std::size_t) atom->nmax, 0.0);
-  PointRows rows = field.rows();
-  rows.P = P.data();
-  rows.F = nullptr;
-  const TransferStep step = field.step_data();
-  double L[9 * BATCH];
-  points_from(nodes, field, with, [&](const MPMPointMap::Run &run, const int *base) {
-    for (int i = run.first; i < run.last; i += BATCH) {
-      const int n = std::min(BATCH, run.last - i);
-      PointRows b = rows_from(field, rows, i);
-      b.P = P.data() + (bigint) nL * i;
-      b.velocity = &point_motion[3 * (bigint) i];
-      with.g2p_gradient(b, step, 0, n, base, field.map->tile_load, L);
-    }
-  });
-  for (std::size_t i = 0; i < (std::size_t) atom->nmax && dim == 2; i++)
-    point_motion[3 * i + 2] = 0.0;
-}
-
 /** In sum_forces: those of loads that follow, and the change since the start of the step of those
- *  between points. False, on this rank, where they are not finite. */
-bool MPMTangent::add_between(const double *u, double &size)
+ *  between points, from number from on. False, on this rank, where they are not finite. */
+bool MPMTangent::add_between(std::size_t from, const double *u, double &size)
 {
   bool good = true;
   sum_forces = loaded ? load_forces : no_force;
-  move_points(u);
+  if (from < between.size()) move_points(u);
   point_forces.resize(3 * (std::size_t) atom->nmax);
-  for (auto *forces : between) {
-    if (!forces->forces_after(point_motion.data(), point_forces.data(), size)) good = false;
-    const double *const before = forces->forces();
+  for (; from < between.size(); from++) {
+    auto &forces = *between[from];
+    if (!forces.forces_after(point_motion.data(), point_forces.data(), size)) good = false;
+    const double *const before = forces.forces();
     for (std::size_t k = 0; k < 3 * (std::size_t) atom->nlocal; k++)
       sum_forces[k] += point_forces[k] - before[k];
   }
   return good;
-}
-
-/* ----------------------------------------------------------------------
-   deformation of the places of the lattice after H [n][nH] of n points from first on, as in
-   MPMFrame
-------------------------------------------------------------------------- */
-
-void MPMTangent::lattice_F(int first, int n, const double *H, double *F) const
-{
-  const bool total = field.frame->is_total();
-  if (!total)
-    for (int p = 0; p < n; p++)
-      for (int k = 0; k < 9; k++) F[9 * p + k] = k % 4 == 0;
-  else if (!field.frame->refers())    // that of the points
-    std::copy_n(field.points->F[first], 9 * n, F);
-  else
-    for (int p = 0; p < n; p++)
-      field.frame->lattice_F(first + p, reinterpret_cast<double(*)[3]>(F + 9 * p));
-  const auto add = [&](auto width) {
-    constexpr int D = decltype(width)::value;
-    for (int p = 0; p < n; p++, F += 9, H += nH)
-      for (int r = 0; r < D; r++)
-        for (int c = 0; c < D; c++) F[3 * r + c] += H[D * c + r];
-  };
-  if (dim == 2)
-    add(std::integral_constant<int, 2>());
-  else
-    add(std::integral_constant<int, 3>());
-}
-
-/** Kinematics of n points from first on after H [n][nH], in the batch. */
-void MPMTangent::deform(int first, int n, const double *H)
-{
-  const auto &batches = *field.batch_kernels;
-  const auto &frame = *field.frame;
-  const bigint row = first;
-  if (nH == nL && !frame.refers()) {
-    (frame.is_total() ? batches.load_total
-                      : batches.load)(*batch, n, 1.0, H, field.points->F[0] + 9 * row,
-                                      field.points->tau[0] + 6 * row, atom->vfrac + row, nullptr);
-    return;
-  }
-  double L[9 * BATCH], hoop[BATCH];
-  for (int p = 0; p < n; p++) {
-    std::copy_n(H + nH * p, nL, L + nL * p);
-    if (nH > nL) hoop[p] = H[nH * p + nL];
-  }
-  frame.refer_gradients(first, n, L);
-  (frame.is_total() ? batches.load_total : batches.load)(
-      *batch, n, 1.0, L, field.points->F[0] + 9 * row, field.points->tau[0] + 6 * row,
-      atom->vfrac + row, nH > nL ? hoop : nullptr);
 }
 
 /** P [n][DIM*DIM] of the stress in a batch, whose F is that of the places of the lattice; or that
@@ -232,21 +102,6 @@ template <int DIM> static void piola_of_batch(const Batch &b, int n, const doubl
       }
     }
   }
-}
-
-/** P [n][nH] of the Kirchhoff stress tau [n][6] after H. */
-void MPMTangent::find_piola(int first, int n, const double *H, const double *tau,
-                            double *stress) const
-{
-  // with entries of a step before that may not be finite, where this one has not set them
-  double F[9 * BATCH + 8], plane[9 * BATCH + 8];
-  lattice_F(first, n, H, F);
-  field.batch_kernels->first_piola(n, F, tau, nH > nL ? plane : stress);
-  if (nH > nL)
-    for (int p = 0; p < n; p++) {
-      std::copy_n(plane + nL * p, nL, stress + nH * p);
-      stress[nH * p + nL] = tau[6 * p + 2] / (1.0 + H[nH * p + nL]);
-    }
 }
 
 /* ----------------------------------------------------------------------
@@ -338,9 +193,21 @@ void MPMTangent::forces_on_carried(double *force)
   const double *const f = field.rows().f;
   for (const auto &[i, share] : carried)
     for (int d = 0; d < 3; d++) forces[3 * i + d] = (1.0 - share) * f[3 * i + d];
-  std::fill(P.begin(), P.end(), 0.0);
-  std::fill(hoop_stress.begin(), hoop_stress.end(), 0.0);
+  clear_stress();
   scatter(forces.data(), force);
+}
+
+/** Of n points with stresses [n][nH]. */
+void MPMTangent::keep_stress(int first, int n, const double *stresses)
+{
+  if (nH == nL) {
+    std::copy_n(stresses, nL * n, &P[(bigint) nL * first]);
+    return;
+  }
+  for (int p = 0; p < n; p++) {
+    std::copy_n(stresses + nH * p, nL, &P[(bigint) nL * (first + p)]);
+    hoop_stress[first + p] = stresses[nH * p + nL];
+  }
 }
 
 void MPMTangent::reduce_carried()
@@ -368,16 +235,12 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &size)
       load_points(first, n, H, more);
       for (int k = 0; k < nH * n; k++) stresses[k] += more[k];
     }
-    if (nH == nL) std::copy_n(stresses, nL * n, &P[(bigint) nL * first]);
-    for (int p = 0; p < n && nH > nL; p++) {
-      std::copy_n(stresses + nH * p, nL, &P[(bigint) nL * (first + p)]);
-      hoop_stress[first + p] = stresses[nH * p + nL];
-    }
+    keep_stress(first, n, stresses);
   });
   size = sum * field.step_data().stress_scale / field.lattice.h;
   if (!between.empty()) {
     double sizes = 0.0;
-    if (!add_between(u, sizes)) bad = 1;
+    if (!add_between(0, u, sizes)) bad = 1;
     size += sizes * field.step_data().force_scale;
   }
   MPI_Allreduce(&bad, &any, 1, MPI_INT, MPI_MAX, world);
@@ -398,27 +261,8 @@ bool MPMTangent::forces(const double *u, double dt, double *force, double &size)
 
 double MPMTangent::memory_usage() const
 {
-  double bytes = sizeof(Batch) + means.memory_usage();
-  for (const auto *list : {&nodes,
-                           &motion_nodes,
-                           &history,
-                           &P,
-                           &hoop_stress,
-                           &tangents,
-                           &no_force,
-                           &forces_on_points,
-                           &load_forces,
-                           &load_tangents,
-                           &stress_tangents,
-                           &deformations,
-                           &mean_stress,
-                           &mean_tangents,
-                           &added,
-                           &volumes,
-                           &volume_gradients,
-                           &point_motion,
-                           &point_forces,
-                           &sum_forces})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return MPMTrialMotion::memory_usage() + means.memory_usage() +
+      bytes_of(history, tangents, no_force, load_forces, load_tangents, stress_tangents,
+               mean_stress, mean_tangents, added, volumes, volume_gradients, point_forces,
+               sum_forces);
 }

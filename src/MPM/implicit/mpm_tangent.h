@@ -10,41 +10,29 @@
 #define LMP_MPM_TANGENT_H
 
 #include "diffusion/mpm_node_scalar.h"
-#include "field/mpm_point_map.h"
-#include "pointers.h"
-#include "transfer/kernels.h"
+#include "implicit/mpm_trial_motion.h"
 
 #include <functional>
 #include <memory>
 #include <vector>
 
 namespace MPM_NS {
-struct Batch;
 struct Tangent;
-}    // namespace MPM_NS
+}
 
 namespace LAMMPS_NS {
-class MPMField;
 class MPMTrialForces;
 
-/** Stress of the points of a field after a motion that is only tried, and its derivative with
- *  respect to that motion. Material laws work on copies of the state of points: nothing is kept
- *  until the step itself moves them.
- *
- *  A motion is a vector u [node][dim] of displacements in the step. A point has their gradient H_ij
- *  = du_i/dX_j with respect to the places of the lattice, and H_zz = u_r/r if there is an axis of
- *  symmetry. Conjugate to these is the first Piola-Kirchhoff stress P = tau (F + H)^-T per unit of
- *  the initial volume, where F is the deformation of the places of the lattice at the start of the
- *  step: unity in the updated frame. Entries of H and P are column-major, with the entry around the
- *  axis at the end. Forces on nodes are in units of mass times acceleration. */
-class MPMTangent : protected Pointers {
+/** Stress of the points of a field after a motion that is only tried (MPMTrialMotion), and its
+ *  derivative with respect to that motion. Material laws work on copies of the state of points:
+ *  nothing is kept until the step itself moves them. */
+class MPMTangent : public MPMTrialMotion {
  public:
   MPMTangent(class LAMMPS *lmp, MPMField &field);
   ~MPMTangent() noexcept override;
 
-  /** Start of a run: choose the transfers. */
+  /** Start of a run. */
   void init();
-
   /** External forces of all points in this step, from atom->f. Must be called first in each step.
    *  Collective. */
   void external_forces(double *force);
@@ -91,12 +79,6 @@ class MPMTangent : protected Pointers {
   /** [n] Moduli of points for compression without lateral strain, from their tangents, averaged
    *  over the axes [pressure]. */
   void find_moduli(std::vector<double> &moduli) const;
-  /** Should forces() and linearize() keep the deformation of points from now on? */
-  void keep_deformations(bool keeps);
-  /** [k][dim][dim] Rotations of the places of the lattice around the nodes of a list, from the mean
-   *  deformation of the points there after the last motion that was kept; unity where there are no
-   *  points. Collective. */
-  void mean_rotations(const std::vector<int64_t> &of, std::vector<double> &rotations);
   /** Minus the change of the force on each node due to its own motion alone: [node][dim][dim].
    *  Collective. */
   void diagonal(std::vector<double> &blocks);
@@ -128,17 +110,9 @@ class MPMTangent : protected Pointers {
   double memory_usage() const;
 
  private:
-  MPMField &field;
-  MPM_NS::TransferKernels with;    // points to nodes by P
-  std::unique_ptr<MPM_NS::Batch> batch;
-  std::unique_ptr<MPM_NS::Tangent> tangent;    // of that batch
-  const int dim, nL;                           // nL: entries of a gradient in the plane or in space
-  int nH;                                      // entries of H
-  bool mls = false;                            // do gradients use moving least squares?
-  std::vector<double> nodes, motion_nodes, history, P, hoop_stress, tangents, no_force,
-      forces_on_points, deformations;
+  std::unique_ptr<MPM_NS::Tangent> tangent;    // of the batch
+  std::vector<double> history, tangents, no_force, sum_forces, point_forces;
   std::vector<CarriedPoint> carried;
-  void reduce_carried();
   bool loaded = false;    // do any points have loads that follow them?
   // [point][3] forces of these loads in addition to atom->f, and [point][nH][3] their derivatives
   // with respect to H, if there are any
@@ -148,30 +122,29 @@ class MPMTangent : protected Pointers {
   // law and the round-off of its stress are both some 1e-10 of its tangent
   static constexpr double DIFFERENCE = 6.0e-6;
 
-  // forces between points, see MPMTrialForces; displacements and forces of points [n][3]
+  // forces between points, see MPMTrialForces: of elements, then of loads
   std::vector<MPMTrialForces *> between;
-  std::size_t nelements = 0;    // the first ones in between; the others are loads
-  std::vector<double> point_motion, point_forces, sum_forces;
-  void move_points(const double *u);
-  bool add_between(const double *u, double &size);
+  std::size_t nelements = 0;
 
-  bool keeps_deformations = false;
-  void keep_deformations(int first, int n, const double *H);
-  template <class Use> void gather(const double *u, const Use &use);
-  void scatter(const double *forces_of_points, double *force);
-  bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
-              MPM_NS::Tangent *tangent = nullptr);
-  // for averages of the pressure: mean stress of points and, after linearize(), its derivatives
-  // with respect to H [point][nH]; the addition to the mean stress by averages or by a pressure
-  // besides the stress; J G [point][nH] with G = F^-T of the places
+  // pressures besides the stress: averages around points, or that of nodes. Mean stress of points
+  // and, after linearize(), its derivatives with respect to H [point][nH]; what is added to it; J G
+  // [point][nH] with G = F^-T of the places
   std::vector<double> mean_stress, mean_tangents, added, volume_gradients;
   std::vector<double> volumes;    // of points at the start of the step, weights of averages
   MPMNodeScalar means;
+  const bool averages;
   const double *pressure = nullptr;
   bool keeps_stress = false, of_stress = false;
   std::vector<double> stress_tangents;    // without the pressure
+
   const std::vector<double> &present() const { return of_stress ? stress_tangents : tangents; }
-  const bool averages;
+  bool stress(const MPMPointMap::Run &, int first, int n, const double *H, double dt, double *P,
+              MPM_NS::Tangent *tangent = nullptr);
+  void keep_stress(int first, int n, const double *stresses);
+  bool add_between(std::size_t from, const double *u, double &size);
+  void reduce_carried();
+  void differentiate(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
+  void take_differences(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
   bool adds() const { return averages || pressure; }
   void find_volume_gradient(const double *F, double *g) const;
   void add_averages(const double *u);
@@ -180,17 +153,11 @@ class MPMTangent : protected Pointers {
   void average(const MPMNodeScalar::TakeValues &take);
   void average_changes();
 
-  void deform(int first, int n, const double *H);
-  void find_piola(int first, int n, const double *H, const double *tau, double *P) const;
   void find_loads();
   bool follows(int first, int n) const;
   void load_points(int first, int n, const double *H, double *P);
   void differentiate_loads(int first, int n, const double *H);
   double asymmetry_of_loads() const;
-  double mls_moment() const;
-  void lattice_F(int first, int n, const double *H, double *F) const;
-  void differentiate(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
-  void take_differences(const MPMPointMap::Run &, int first, int n, const double *H, double dt);
 };
 
 }    // namespace LAMMPS_NS

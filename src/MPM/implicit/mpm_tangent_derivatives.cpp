@@ -16,10 +16,7 @@
 #include "implicit/mpm_tangent.h"
 
 #include "field/fix_mpm_material.h"
-#include "field/mpm_field.h"
 #include "field/mpm_interfaces.h"
-#include "implicit/mpm_tangent_gather.h"
-#include "material/batch_kernels.h"
 #include "math/matrix.h"
 
 #include <algorithm>

@@ -13,23 +13,13 @@
 
 #include "implicit/mpm_tangent.h"
 
-#include "field/mpm_field.h"
-#include "field/mpm_frame.h"
 #include "field/mpm_interfaces.h"
-#include "field/mpm_stencil.h"
 
 #include <algorithm>
 #include <unordered_map>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
-
-/** Gradients of moving least squares are weights times distances [node spacings] times minus
- *  this. */
-double MPMTangent::mls_moment() const
-{
-  return mls ? shape_constants[field.options.shape].inv_moment / field.lattice.h : 0.0;
-}
 
 /** The nodes of point i, each of them once, by their numbers where corners of a domain see one of
  *  them together. */
@@ -59,7 +49,7 @@ static void collect(const MPMStencil &stencil, const MPMField &field, int slot, 
 void MPMTangent::each_point(const UsePoint &use) const
 {
   const MPMStencil stencil(field);
-  const double scale = field.step_data().stress_scale, moment = mls_moment();
+  const double scale = field.step_data().stress_scale;
   const int ngrad = nH > nL ? dim + 1 : dim, size = dim * ngrad;
   std::vector<MPMStencil::Node> reached;
   std::vector<int64_t> nodes;
@@ -67,15 +57,13 @@ void MPMTangent::each_point(const UsePoint &use) const
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       const double *const K = &present()[i * nH * nH], V = scale * atom->vfrac[i];
-      const double around =
-          nH > nL ? 1.0 / field.frame->radius((int) i, field.frame->places()[i][0]) : 0.0;
+      const double around = turn_of(i);
       nodes.clear();
       gradients.clear();
       collect(stencil, field, run.slot, (int) i, reached);
       for (const auto &node : reached) {
         nodes.push_back(node.number);
-        for (int d = 0; d < dim; d++)
-          gradients.push_back(mls ? -moment * node.weight * node.r[d] : node.gradient[d]);
+        for (int d = 0; d < dim; d++) gradients.push_back(gradient(node, d));
         if (ngrad > dim) gradients.push_back(around * node.weight);
       }
       for (int k = 0; k < nH; k++)
@@ -98,7 +86,7 @@ void MPMTangent::each_mean(const UseMean &use) const
     std::vector<double> changes;    // [nodes][dim] of the volume by their motion
   };
   const MPMStencil stencil(field);
-  const double scale = field.step_data().stress_scale, moment = mls_moment();
+  const double scale = field.step_data().stress_scale;
   std::vector<MPMStencil::Node> reached;
   std::vector<double> change;
   for (std::size_t number = 0; averages && number < field.materials.size(); number++) {
@@ -109,10 +97,7 @@ void MPMTangent::each_mean(const UseMean &use) const
       if (run.material != material) continue;
       for (bigint i = run.first; i < run.last; i++) {
         const double *const g = &volume_gradients[nH * i], *const m = &mean_tangents[nH * i];
-        const double V = scale * atom->vfrac[i],
-                     around = nH > nL
-            ? 1.0 / field.frame->radius((int) i, field.frame->places()[i][0])
-            : 0.0;
+        const double V = scale * atom->vfrac[i], around = turn_of(i);
         double gm = 0.0, gg = 0.0;
         for (int k = 0; k < nH; k++) {
           gm += g[k] * m[k];
@@ -123,8 +108,8 @@ void MPMTangent::each_mean(const UseMean &use) const
         for (std::size_t j = 0; j < reached.size(); j++) {
           const auto &node = reached[j];
           for (int l = 0; l < dim; l++) {
-            const double gradient = mls ? -moment * node.weight * node.r[l] : node.gradient[l];
-            for (int a = 0; a < dim; a++) change[dim * j + a] += V * g[dim * l + a] * gradient;
+            const double slope = gradient(node, l);
+            for (int a = 0; a < dim; a++) change[dim * j + a] += V * g[dim * l + a] * slope;
           }
           if (nH > nL) change[dim * j] += V * g[nL] * around * node.weight;
         }
@@ -181,20 +166,18 @@ void MPMTangent::diagonal(std::vector<double> &blocks)
 {
   const Grid &grid = field.grid;
   const MPMStencil stencil(field);
-  const double scale = field.step_data().stress_scale, moment = mls_moment();
-  const double *const place = &field.frame->places()[0][0];
+  const double scale = field.step_data().stress_scale;
   blocks.assign(grid.nnodes() * nL, 0.0);
   std::vector<MPMStencil::Node> reached;
   const auto add = nH > nL ? add_block<2, 5> : dim == 2 ? add_block<2, 4> : add_block<3, 9>;
   for (const auto &run : field.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
       const double *const K = &present()[i * nH * nH], V = scale * atom->vfrac[i];
-      const double around = nH > nL ? 1.0 / field.frame->radius((int) i, place[3 * i]) : 0.0;
+      const double around = turn_of(i);
       collect(stencil, field, run.slot, (int) i, reached);
       for (const auto &node : reached) {
         double g[3];
-        for (int d = 0; d < dim; d++)
-          g[d] = mls ? -moment * node.weight * node.r[d] : node.gradient[d];
+        for (int d = 0; d < dim; d++) g[d] = gradient(node, d);
         add(K, g, around * node.weight, V, &blocks[node.number * nL]);
       }
     }

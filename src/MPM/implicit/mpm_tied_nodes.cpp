@@ -6,15 +6,13 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "implicit/mpm_tied_nodes.h"
-
 #include "field/mpm_node_action.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_trial_contact.h"
 #include "implicit/mpm_constraints.h"
-#include "implicit/mpm_solved_nodes.h"
 #include "math/sets.h"
 #include "solve/lattice_nodes.h"
+#include "solve/lattice_ranks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,16 +21,13 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// entries of projections that are not round-off
-static constexpr double PROJECTED = 1.0e-12;
-// nodes in a cluster up to which each has its own unit vector
-static constexpr int MOST_TIED = 48;
-// in larger clusters, spacings between nodes that share a unit vector
-static constexpr int APART = 7;
+static constexpr double PROJECTED = 1.0e-12;    // entries of projections that are not round-off
+static constexpr int MOST_TIED = 48;            // nodes of a cluster that have each a unit vector
+static constexpr int APART = 7;    // in larger clusters, spacings of nodes that share a unit vector
 
 namespace {
 
-using Tie = SplineMultigrid::Tie;
+using Tie = NodeTie;
 
 class TiedNodes {
  public:

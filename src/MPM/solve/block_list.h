@@ -10,7 +10,11 @@
 #define MPM_SOLVE_BLOCK_LIST_H
 
 #include "solve/block_rows.h"
+#include "solve/bytes_of.h"
+#include "solve/lattice_nodes.h"
 #include "solve/lattice_ranks.h"
+
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cstdint>
@@ -18,7 +22,29 @@
 #include <vector>
 
 namespace MPM_NS {
+/** A number at random that depends on the place alone. */
+inline double place_noise(const LatticeIndex &index, int a)
+{
+  uint64_t seed = lattice_key(index) + 77 * a;
+  for (int k = 0; k < 3; k++) {
+    seed ^= seed >> 29;
+    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  }
+  return (double) (seed >> 33) / (1u << 30) - 1.0;
+}
 
+/** A block of a node. */
+using NodeBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 3, 3>;
+
+/** Inverse of a symmetric matrix; directions without stiffness have a little. */
+inline NodeBlock inverse_of(const NodeBlock &A)
+{
+  const double scale = A.trace() / A.rows();
+  Eigen::SelfAdjointEigenSolver<NodeBlock> modes(A);
+  Eigen::VectorXd values = modes.eigenvalues();
+  for (int a = 0; a < values.size(); a++) values[a] = 1.0 / std::max(values[a], 1.0e-6 * scale);
+  return modes.eigenvectors() * values.asDiagonal() * modes.eigenvectors().transpose();
+}
 /** A value [width] of a node. */
 struct NodeValue {
   int node;
@@ -37,6 +63,21 @@ struct BlockList {
     rows[row].emplace_back(column, (int) list.size());
     list.push_back({row, column, {}});
     return list.back();
+  }
+  /** Adds a block to the one at its place. */
+  void add(const MatrixBlock &block, int width)
+  {
+    double *const to = at(block.row, block.column).value;
+    for (int ab = 0; ab < width * width; ab++) to[ab] += block.value[ab];
+  }
+  /** The same for K [width][width] at any place, in the lower triangle. */
+  void add_lower(int row, int column, const double *K, int width)
+  {
+    const bool lower = row >= column;
+    double *const to = (lower ? at(row, column) : at(column, row)).value;
+    for (int a = 0; a < width; a++)
+      for (int b = 0; b < width; b++)
+        to[a * width + b] += lower ? K[a * width + b] : K[b * width + a];
   }
   /** c b b^T of the values b [width] of nodes, the lower triangle. */
   void add_products(const NodeValue *begin, const NodeValue *end, double c, int width)
@@ -68,9 +109,8 @@ struct BlockList {
   }
   double memory_usage() const
   {
-    double bytes = list.capacity() * sizeof(MatrixBlock) + rows.capacity() * sizeof(rows[0]) +
-        place.capacity() * sizeof(int);
-    for (const auto &row : rows) bytes += row.capacity() * sizeof(row[0]);
+    double bytes = bytes_of(list, rows, place);
+    for (const auto &row : rows) bytes += bytes_of(row);
     return bytes;
   }
 
@@ -144,10 +184,7 @@ struct MeanTerms {
         f(joined.data(), joined.data() + joined.size(), sums[0] / (sums[1] * sums[2]));
     }
   }
-  double memory_usage() const
-  {
-    return heads.capacity() * sizeof(Head) + values.capacity() * sizeof(NodeValue);
-  }
+  double memory_usage() const { return bytes_of(heads, values); }
 };
 
 }    // namespace MPM_NS

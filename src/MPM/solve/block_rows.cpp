@@ -218,9 +218,3 @@ BlockRows::Sparse BlockRows::matrix() const
   *outer = (int) values.size();
   return A;
 }
-
-double BlockRows::memory_usage() const
-{
-  return (first.capacity() + column.capacity() + bytes.capacity()) * sizeof(int) +
-      start.capacity() * sizeof(int64_t) + (value.capacity() + product.capacity()) * sizeof(double);
-}

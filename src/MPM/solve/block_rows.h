@@ -10,7 +10,7 @@
 #define MPM_SOLVE_BLOCK_ROWS_H
 
 #include "solve/lattice_ranks.h"
-#include "solve/matrix_block.h"
+#include "solve/node_constraints.h"
 
 #include <Eigen/SparseCore>
 
@@ -53,7 +53,7 @@ class BlockRows {
   /** The whole matrix. Collective. */
   Sparse matrix() const;
 
-  double memory_usage() const;
+  double memory_usage() const { return bytes_of(first, column, bytes, start, value, product); }
 
  private:
   LatticeRanks *ranks = nullptr;

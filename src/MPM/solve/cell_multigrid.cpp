@@ -196,9 +196,7 @@ class ColoredSums {
   double memory_usage() const
   {
     double bytes = 0.0;
-    for (const auto &of : colors)
-      bytes += (of.cell.capacity() + of.neighbor.capacity()) * sizeof(int) +
-          of.face.capacity() * sizeof(double);
+    for (const auto &of : colors) bytes += bytes_of(of.cell, of.neighbor, of.face);
     return bytes;
   }
 
@@ -540,8 +538,8 @@ void CellMultigrid::Levels::cycle(std::size_t which)
   const double *const b = level.b.data(), *const diagonal = level.diagonal.data(),
                       *const inverse = graph.inverse.data();
   const int colors = level.proper ? 1 : 2;    // with a residual
-  double *const to_be =
-      level.proper ? x : level.to_be.data();    // in no order within a color: symmetric
+  // in no order within a color: symmetric
+  double *const to_be = level.proper ? x : level.to_be.data();
   const auto sweep = [&](int color) {
     level.sums.visit(color, x, [=](int cell, double sum) {
       to_be[cell] = inverse[cell] * (b[cell] + sum);
@@ -627,18 +625,12 @@ int CellMultigrid::levels() const
 
 double CellMultigrid::memory_usage() const
 {
-  double bytes = (on->piece.capacity() + on->number.capacity() + on->all_numbers.capacity() +
-                  on->pool.capacity() + on->part.capacity() + on->part_number.capacity() +
-                  on->part_numbers.capacity()) *
-          sizeof(int) +
-      (on->partial.capacity() + on->gathered.capacity() + on->node_values.capacity() +
-       on->cells_of_pool.capacity()) *
-          sizeof(double) +
+  double bytes =
+      bytes_of(on->piece, on->number, on->all_numbers, on->pool, on->part, on->part_number,
+               on->part_numbers, on->partial, on->gathered, on->node_values, on->cells_of_pool) +
       on->factors.memory_usage();
   for (const auto &level : on->coarse)
     bytes += level.graph.memory_usage() + level.sums.memory_usage() +
-        level.next.capacity() * sizeof(int) +
-        (2 * level.x.capacity() + level.diagonal.capacity() + level.to_be.capacity()) *
-            sizeof(double);
+        bytes_of(level.next, level.x, level.b, level.diagonal, level.to_be);
   return bytes;
 }

@@ -33,15 +33,6 @@ bool CellGraph::is_proper() const
   return true;
 }
 
-double CellGraph::memory_usage() const
-{
-  double bytes = (where.capacity() + neighbor.capacity()) * sizeof(int64_t) +
-      (face.capacity() + outside.capacity() + inverse.capacity()) * sizeof(double);
-  for (const auto *list : {&index, &first, &colored[0], &colored[1]})
-    bytes += list->capacity() * sizeof(int);
-  return bytes;
-}
-
 /* ---------------------------------------------------------------------- */
 
 void CellOperator::clear()
@@ -124,9 +115,4 @@ void CellOperator::scale(const double *r, double *z) const
   std::fill_n(z, grid.nnodes(), 0.0);
   for (int cell = 0; cell < graph.size(); cell++)
     z[graph.where[cell]] = graph.inverse[cell] * r[graph.where[cell]];
-}
-
-double CellOperator::memory_usage() const
-{
-  return (face.capacity() + outside.capacity()) * sizeof(double) + graph.memory_usage();
 }

@@ -9,11 +9,49 @@
 #ifndef MPM_SOLVE_CELL_OPERATOR_H
 #define MPM_SOLVE_CELL_OPERATOR_H
 
-#include "solve/cell_graph.h"
+#include "solve/bytes_of.h"
 #include "solve/lattice_ranks.h"
 
 namespace MPM_NS {
+/** Cells and the coefficients between them: the contribution of one rank to (A x)_i = sum_j face_ij
+ *  (x_i - x_j) + outside_i x_i. */
+struct CellGraph {
+  std::vector<int> index;        ///< [cell][3] index on the lattice of the level, within the period
+  std::vector<int64_t> where;    ///< [cell] its index in vectors
+  std::vector<int> first;        ///< [cells + 1] ranges in neighbor and face
+  std::vector<int64_t> neighbor;    ///< index in vectors of the cell behind a face
+  std::vector<double> face;         ///< coefficient of a face, not negative
+  std::vector<double> outside;      ///< [cell] coefficient to places where x is 0
+  /** [cell] one over the diagonal, summed over ranks; 0 where the diagonal is 0 */
+  std::vector<double> inverse;
+  std::vector<int> colored[2];    ///< cells with an even, and with an odd sum of their index
 
+  int size() const { return where.size(); }
+  void color();    ///< makes the lists of colors
+  /** Do neighbors always have different colors? For graphs in which the index of a cell in vectors
+   *  is its number. */
+  bool is_proper() const;
+
+  /** This rank's part of (A x) at a cell. */
+  double flow(int cell, const double *x) const
+  {
+    const double mine = x[where[cell]];
+    double sum = outside[cell] * mine;
+    for (int k = first[cell]; k < first[cell + 1]; k++) sum += face[k] * (mine - x[neighbor[k]]);
+    return sum;
+  }
+  /** This rank's contribution to the diagonal of A at a cell. */
+  double diagonal(int cell) const
+  {
+    double sum = outside[cell];
+    for (int k = first[cell]; k < first[cell + 1]; k++) sum += face[k];
+    return sum;
+  }
+  double memory_usage() const
+  {
+    return bytes_of(index, first, colored[0], colored[1], where, neighbor, face, outside, inverse);
+  }
+};
 /** Poisson's equation for the cells of a lattice, such as the equation for the pressure of an
  *  incompressible flow:
  *
@@ -55,7 +93,7 @@ class CellOperator {
   void scale(const double *r, double *z) const;
   /** The contribution of this rank to the operator; call after finish(). */
   const CellGraph &cells() const { return graph; }
-  double memory_usage() const;
+  double memory_usage() const { return bytes_of(face, outside) + graph.memory_usage(); }
 
  private:
   CellGraph graph;

@@ -8,9 +8,9 @@
 
 #include "solve/coarse_levels.h"
 
-#include "solve/block_inverse.h"
+#include "solve/block_list.h"
 #include "solve/chebyshev.h"
-#include "solve/two_scale_relation.h"
+#include "solve/spline_transfer.h"
 
 #include <algorithm>
 #include <numeric>
@@ -44,7 +44,7 @@ void CoarseLevels::build(LatticeNodes level, std::vector<int> rows, const int *p
                       [&](const LatticeIndex &parent, double weight) {
                         now.to_next.parts.push_back({next.add(parent), weight});
                       });
-          now.to_next.end_function();
+          now.to_next.end_row();
         }
         next_rows.push_back((int) next.index.size());
       }
@@ -188,10 +188,8 @@ double CoarseLevels::memory_usage() const
   double bytes = factors.memory_usage();
   for (const auto &level : all) {
     bytes += level.A.memory_usage() + level.to_next.memory_usage() +
-        (level.x.size() + level.b.size()) * sizeof(double) + level.rim.capacity() * sizeof(int);
-    for (const auto *list : {&level.inverse, &level.work[0], &level.work[1], &level.work[2],
-                             &level.rim_b, &level.rim_x})
-      bytes += list->capacity() * sizeof(double);
+        bytes_of(level.x, level.b, level.rim, level.inverse, level.work[0], level.work[1],
+                 level.work[2], level.rim_b, level.rim_x);
     if (level.rim_factors) bytes += level.rim_factors->memory_usage();
   }
   return bytes;

@@ -20,8 +20,8 @@
 namespace MPM_NS {
 
 /** The coarse levels of SplineMultigrid: Galerkin operators of each other, smoothed as the finest
- *  level is, and the coarsest one is factorized. Each rank has some of the rows; vectors are complete
- *  on all ranks. */
+ *  level is. The coarsest one is factorized. Each rank has some of the rows, and all ranks have
+ *  complete vectors. */
 class CoarseLevels {
  public:
   /** few: largest number of unknowns of a level that is factorized. */
@@ -30,8 +30,8 @@ class CoarseLevels {
       factors(&ranks, EnvelopeFactors::ENOUGH, EnvelopeFactors::ROUNDED)
   {
   }
-  /** Builds the levels from the first one on. rows: [ranks + 1], first node of each rank. period: in
-   *  nodes, 0: not periodic. blocks: of this rank, row >= column. Collective. */
+  /** Builds the levels from the first one on. rows: [ranks + 1], first node of each rank. period:
+   *  in nodes, 0: not periodic. blocks: of this rank, row >= column. Collective. */
   void build(LatticeNodes, std::vector<int> rows, const int *period,
              std::vector<MatrixBlock> blocks);
   /** Factorizes the last level; false: the levels must not be used. Collective. */

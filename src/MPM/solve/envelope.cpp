@@ -13,24 +13,12 @@
 
 using namespace MPM_NS;
 
-static constexpr int B = FACTOR_BLOCK, BB = B * B;
-
 void Envelope::start(int inner_rows, int rest)
 {
   inner = inner_rows;
   first.resize(inner + rest);
   for (int i = 0; i < rows(); i++) first[i] = std::min(i, inner);
   begin.clear();
-}
-
-void Envelope::reach(int row, int column)
-{
-  first[row / B] = std::min(first[row / B], column / B);
-}
-
-int64_t Envelope::reals_of(int row) const
-{
-  return (int64_t) BB * (row - first[row] + 1);
 }
 
 int64_t Envelope::count() const
@@ -61,12 +49,6 @@ double &Envelope::at(int row, int column)
 {
   const int i = row / B;
   return values[begin[i] + (int64_t) B * (column - B * first[i]) + row % B];
-}
-
-/** The start of the block at the diagonal in values. */
-int64_t Envelope::diagonal(int row) const
-{
-  return begin[row + 1] - BB;
 }
 
 /** The inverse of the factor L of A = L L^T, in place of A, columns; false: it has none. */
@@ -182,10 +164,4 @@ void Envelope::solve_backward(double *y) const
     backward(kernels.of_doubles, values.data(), y);
   else
     backward(kernels.of_floats, rounded.data(), y);
-}
-
-double Envelope::memory_usage() const
-{
-  return values.capacity() * sizeof(double) + rounded.capacity() * sizeof(float) +
-      begin.capacity() * sizeof(int64_t) + first.capacity() * sizeof(int);
 }

@@ -10,7 +10,9 @@
 #define MPM_SOLVE_ENVELOPE_H
 
 #include "solve/block_kernels.h"
+#include "solve/bytes_of.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -28,7 +30,7 @@ class Envelope {
   /** Starts an empty matrix. inner, rest: number of rows of blocks with and without factors. */
   void start(int inner, int rest);
   /** Notes that a row has an entry at this column, which must not be behind the diagonal block. */
-  void reach(int row, int column);
+  void reach(int row, int column) { first[row / B] = std::min(first[row / B], column / B); }
   /** The number of reals needed for the entries noted by reach(). */
   int64_t count() const;
   /** The row, in unknowns, up to which half of them are needed. */
@@ -57,9 +59,11 @@ class Envelope {
   /** y1 <- L^-T (y1 - L21^T y2) for the rows with factors, where y2 belongs to the rows without
    *  factors. */
   void solve_backward(double *y) const;
-  double memory_usage() const;
+  double memory_usage() const { return bytes_of(values, rounded, begin, first); }
 
  private:
+  static constexpr int B = FACTOR_BLOCK, BB = B * B;
+
   const BlockKernels kernels;
   int inner = 0;
   std::vector<int> first;        // [row of blocks] column of its first block
@@ -69,8 +73,9 @@ class Envelope {
   std::vector<float> rounded;    // the same after round(); values is empty then
 
   int rows() const { return (int) first.size(); }
-  int64_t reals_of(int row) const;
-  int64_t diagonal(int row) const;
+  int64_t reals_of(int row) const { return (int64_t) BB * (row - first[row] + 1); }
+  /** The start of the block at the diagonal in values. */
+  int64_t diagonal(int row) const { return begin[row + 1] - BB; }
   template <class Real> using Products = BlockKernels::WithVector<Real>;
   template <class Real> void forward(const Products<Real> &, const Real *of, double *y) const;
   template <class Real> void backward(const Products<Real> &, const Real *of, double *y) const;

@@ -8,7 +8,6 @@
 
 #include "solve/fine_smoother.h"
 
-#include "solve/block_inverse.h"
 #include "solve/chebyshev.h"
 
 #include <algorithm>
@@ -60,17 +59,8 @@ void FineSmoother::find_rim(const LatticeNodes &everywhere, const std::vector<ch
         parts.parts.push_back({at, {}});
         std::copy_n(P, w * w, parts.parts.back().W);
       });
-    parts.end_node();
+    parts.end_row();
   }
-}
-
-void FineSmoother::add(int row, int column, const double *K)
-{
-  const int w = nodes.width;
-  const bool lower = row >= column;
-  auto &to = lower ? blocks.at(row, column) : blocks.at(column, row);
-  for (int a = 0; a < w; a++)
-    for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
 }
 
 void FineSmoother::set_block(int64_t node, const NodeBlock &D, double scale)
@@ -111,19 +101,14 @@ bool FineSmoother::factorize(const double *mass)
           add_product(w, i.W, j.W, mass[node], blocks.at(i.node, j.node).value);
       });
   }
-  for (const auto &b : fixed) {
-    if (!factors.together(b.row, b.column)) continue;
-    auto &to = blocks.at(b.row, b.column);
-    for (int ab = 0; ab < w * w; ab++) to.value[ab] += b.value[ab];
-  }
+  const auto add_known = [&](const MatrixBlock &block) {
+    if (factors.together(block.row, block.column)) blocks.add(block, w);
+  };
+  for (const auto &block : fixed) add_known(block);
   means.each_of_all(ranks, [&](const NodeValue *begin, const NodeValue *end, double c) {
     BlockList more;
     more.add_products(begin, end, c, w);
-    for (const auto &b : more.list) {
-      if (!factors.together(b.row, b.column)) continue;
-      auto &to = blocks.at(b.row, b.column);
-      for (int ab = 0; ab < w * w; ab++) to.value[ab] += b.value[ab];
-    }
+    for (const auto &block : more.list) add_known(block);
   });
   means.clear();
   const auto gathered = ranks.gather(blocks.list);
@@ -133,20 +118,6 @@ bool FineSmoother::factorize(const double *mass)
   rim_b.resize(rim.index.size() * w);
   rim_x.resize(rim.index.size() * w);
   return usable;
-}
-
-/** rim_b <- P^T rim_b, or rim_x <- P rim_x, of nodes that are tied. */
-void FineSmoother::tie_rim(std::vector<double> &x, bool transposed) const
-{
-  if (rim_ties.empty()) return;
-  const int w = nodes.width;
-  const auto before = x;
-  for (const auto &tie : rim_ties) std::fill_n(x.data() + (std::size_t) tie.row * w, w, 0.0);
-  for (const auto &tie : rim_ties) {
-    const int from = transposed ? tie.row : tie.column, to = transposed ? tie.column : tie.row;
-    add_part(w, tie.value, transposed, 1.0, before.data() + (std::size_t) from * w,
-             x.data() + (std::size_t) to * w);
-  }
 }
 
 void FineSmoother::apply(const double *r, double *z)
@@ -169,9 +140,9 @@ void FineSmoother::apply(const double *r, double *z)
   ranks.gather(partial, gathered);
   for (std::size_t k = 0; k < all_numbers.size(); k++)
     for (int a = 0; a < w; a++) rim_b[all_numbers[k] * w + a] = gathered[k * w + a];
-  tie_rim(rim_b, true);
+  apply_constraints(w, rim_ties, true, rim_b);
   factors.solve(rim_b.data(), rim_x.data());
-  tie_rim(rim_x, false);
+  apply_constraints(w, rim_ties, false, rim_x);
   for (int64_t node = 0; node < grid.nnodes(); node++)
     if (number[node] >= 0 && nodes.tied[node])
       std::copy_n(rim_x.data() + number[node] * w, w, z + node * w);
@@ -212,12 +183,8 @@ void FineSmoother::smooth(LinearSystem &system, const double *r, double *z, bool
 
 double FineSmoother::memory_usage() const
 {
-  double bytes = factors.memory_usage() + blocks.memory_usage() + means.memory_usage() +
-      parts.memory_usage() + (rim_ties.capacity() + fixed.capacity()) * sizeof(MatrixBlock) +
-      owned.capacity() * sizeof(int64_t) +
-      (number.capacity() + all_numbers.capacity()) * sizeof(int) + node_list_bytes(rim);
-  for (const auto *list :
-       {&inverse, &rim_x, &rim_b, &partial, &gathered, &work[0], &work[1], &work[2]})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return factors.memory_usage() + blocks.memory_usage() + means.memory_usage() +
+      parts.memory_usage() + rim.memory_usage() +
+      bytes_of(rim_ties, fixed, owned, number, all_numbers, inverse, rim_x, rim_b, partial,
+               gathered, work[0], work[1], work[2]);
 }

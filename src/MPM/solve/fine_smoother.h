@@ -9,7 +9,6 @@
 #ifndef MPM_SOLVE_FINE_SMOOTHER_H
 #define MPM_SOLVE_FINE_SMOOTHER_H
 
-#include "solve/block_inverse.h"
 #include "solve/block_list.h"
 #include "solve/lattice_nodes.h"
 #include "solve/lattice_ranks.h"
@@ -21,9 +20,9 @@
 
 namespace MPM_NS {
 
-/** The smoother of the finest level: Chebyshev polynomials with the inverse diagonal blocks of nodes
- *  and, in the rim, that is at surfaces and interfaces, where functions are nearly dependent, with
- *  the inverses of chunks. */
+/** The smoother of the finest level: Chebyshev polynomials with the inverse diagonal blocks of
+ *  nodes and, in the rim, that is at surfaces and interfaces, where functions are nearly dependent,
+ *  with the inverses of chunks. */
 class FineSmoother {
  public:
   FineSmoother(const NodeConstraints &, LatticeRanks &);
@@ -38,7 +37,7 @@ class FineSmoother {
   /** Is the block of two nodes of the rim needed? */
   bool together(int a, int b) const { return factors.together(a, b); }
   /** Adds a block of the rim, with its transposed. */
-  void add(int row, int column, const double *K);
+  void add(int row, int column, const double *K) { blocks.add_lower(row, column, K, nodes.width); }
   /** Sets the diagonal block D of a node, with the mean scale on its diagonal. What a constraint
    *  fixes has unity there, and nothing afterwards. */
   void set_block(int64_t node, const NodeBlock &D, double scale);
@@ -69,7 +68,6 @@ class FineSmoother {
   RimFactors factors;
   std::vector<double> rim_x, rim_b, partial, gathered, work[3];
 
-  void tie_rim(std::vector<double> &x, bool transposed) const;
   void apply(const double *r, double *z);
 };
 

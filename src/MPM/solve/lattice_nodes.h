@@ -9,13 +9,34 @@
 #ifndef MPM_SOLVE_LATTICE_NODES_H
 #define MPM_SOLVE_LATTICE_NODES_H
 
-#include "solve/lattice_key.h"
+#include "solve/bytes_of.h"
 
+#include <array>
+#include <cstdint>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace MPM_NS {
+using LatticeIndex = std::array<int, 3>;
 
+/** One number for the index of a node or cell, each component of which is from -2^20 to 2^20 - 1.
+ *  Keys have the same order as indices. */
+inline uint64_t lattice_key(const LatticeIndex &index)
+{
+  uint64_t key = 0;
+  for (const int i : index) key = key << 21 | (uint64_t) (i + (1 << 20));
+  return key;
+}
+
+/** The index of a key. */
+inline LatticeIndex lattice_index(uint64_t key)
+{
+  LatticeIndex index;
+  for (int d = 0; d < 3; d++)
+    index[d] = (int) (key >> (21 * (2 - d)) & ((1 << 21) - 1)) - (1 << 20);
+  return index;
+}
 /** Nodes, found by their index and numbered in the order in which they were added. */
 struct LatticeNodes {
   std::vector<LatticeIndex> index;
@@ -33,6 +54,12 @@ struct LatticeNodes {
   {
     const auto found = number.find(lattice_key(at));
     return found == number.end() ? -1 : found->second;
+  }
+  double memory_usage() const
+  {
+    // a node of a hash map: what it has, and a pointer in it and to it
+    constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
+    return bytes_of(index) + number.size() * HASHED;
   }
 };
 

@@ -11,14 +11,17 @@
 
 #include "lattice/grid.h"
 #include "solve/lattice_nodes.h"
-#include "solve/matrix_block.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
 namespace MPM_NS {
-
+/** A block [width][width] of a matrix. */
+struct MatrixBlock {
+  int row, column;
+  double value[9];
+};
 /** to += c A^T B of matrices [w][w] */
 inline void add_product(int w, const double *A, const double *B, double c, double *to)
 {
@@ -35,12 +38,17 @@ inline void add_part(int w, const double *W, bool transposed, double c, const do
     for (int b = 0; b < w; b++) to[a] += c * (transposed ? W[b * w + a] : W[a * w + b]) * from[b];
 }
 
-/** Bytes of a list of nodes. */
-inline double node_list_bytes(const LatticeNodes &list)
+/** x <- P x, or P^T x, of the nodes that have rows in the list: row u, column x of u = P x. */
+inline void apply_constraints(int w, const std::vector<MatrixBlock> &list, bool transposed,
+                              std::vector<double> &x)
 {
-  // a node of a hash map: what it has, and a pointer in it and to it
-  constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
-  return list.index.capacity() * sizeof(LatticeIndex) + list.number.size() * HASHED;
+  const auto before = x;
+  for (const auto &part : list) std::fill_n(x.data() + (std::size_t) part.row * w, w, 0.0);
+  for (const auto &part : list) {
+    const int from = transposed ? part.row : part.column, to = transposed ? part.column : part.row;
+    add_part(w, part.value, transposed, 1.0, before.data() + (std::size_t) from * w,
+             x.data() + (std::size_t) to * w);
+  }
 }
 
 /** A term of a constraint that couples several nodes: the motion of a node is u = sum P x over
@@ -116,43 +124,55 @@ class NodeConstraints {
     });
     for (; tie != ties.end() && tie->node == node; ++tie) f(tie->other, tie->P);
   }
-  double memory_usage() const
-  {
-    return projection.capacity() * sizeof(double) + plain.capacity() + tied.capacity() +
-        ties.capacity() * sizeof(NodeTie);
-  }
+  double memory_usage() const { return bytes_of(projection, plain, tied, ties); }
 
  private:
   std::vector<double> projection;    // [node][width][width], empty: none
 };
 
-/** What nodes with constraints are of the nodes of another set: u = sum W x, with W
- *  [width][width]. */
-struct ConstrainedParts {
-  struct Part {
-    int node;
-    double W[9];
+/** Parts that each of several functions or nodes has in those of another set. */
+template <class One> struct PartLists {
+  using Part = One;
+  struct Range {
+    const Part *from, *to;
+    const Part *begin() const { return from; }
+    const Part *end() const { return to; }
   };
-  std::vector<int> first{0};    ///< [node + 1]
+  std::vector<int> first{0};    // [rows + 1] ranges in parts
   std::vector<Part> parts;
 
-  const Part *begin(int64_t node) const { return parts.data() + first[node]; }
-  const Part *end(int64_t node) const { return parts.data() + first[node + 1]; }
-  void end_node() { first.push_back((int) parts.size()); }
+  Range of(int64_t row) const { return {parts.data() + first[row], parts.data() + first[row + 1]}; }
+  void end_row() { first.push_back((int) parts.size()); }
+  double memory_usage() const { return bytes_of(first, parts); }
+};
 
+/** Each function as a weighted sum of functions of a coarser level. */
+struct WeightedPart {
+  int node;
+  double weight;
+};
+using CoarseParts = PartLists<WeightedPart>;
+
+/** What nodes with constraints are of the nodes of another set: u = sum W x, with W
+ *  [width][width]. */
+struct ConstrainedPart {
+  int node;
+  double W[9];
+};
+struct ConstrainedParts : PartLists<ConstrainedPart> {
   /** Calls f(i, j) for the parts i and j of a node, in one triangle. */
   template <class F> void each_pair(int64_t node, const F &f) const
   {
-    for (auto i = begin(node); i != end(node); ++i)
-      for (auto j = begin(node); j != end(node); ++j)
-        if (i->node >= j->node) f(*i, *j);
+    for (const auto &i : of(node))
+      for (const auto &j : of(node))
+        if (i.node >= j.node) f(i, j);
   }
   /** Calls f(block) for the blocks of c (1 - P)^T (1 - P): the directions that a constraint takes
    *  from a node get this stiffness, so that they are no motions without any. self: the node in the
    *  other set. */
   template <class F> void each_fixed(int w, int64_t node, int self, double c, const F &f) const
   {
-    std::vector<Part> rest(begin(node), end(node));
+    std::vector<Part> rest(of(node).begin(), of(node).end());
     bool there = false;
     for (auto &part : rest) {
       for (int ab = 0; ab < w * w; ab++) part.W[ab] = -part.W[ab];
@@ -171,10 +191,6 @@ struct ConstrainedParts {
         add_product(w, i.W, j.W, c, block.value);
         f(block);
       }
-  }
-  double memory_usage() const
-  {
-    return first.capacity() * sizeof(int) + parts.capacity() * sizeof(Part);
   }
 };
 

@@ -14,8 +14,8 @@ using namespace MPM_NS;
 
 namespace {
 
-/** Adds to one triangle of the element, blocks [number][number] of [W][W], the stiffness of functions
- *  with the gradients [G] by the stiffness C [G W][G W] of a point. */
+/** Adds to one triangle of the element, blocks [number][number] of [W][W], the stiffness of
+ *  functions with the gradients [G] by the stiffness C [G W][G W] of a point. */
 template <int W, int G, class F>
 void add_blocks(int number, F gradient_of, const double *C, double *element)
 {
@@ -67,11 +67,6 @@ void add_projected_blocks(int number, const double *gradients, const double *C, 
 
 }    // namespace
 
-void PointStiffness::setup()
-{
-  place.assign(transfer.mine.index.size(), -1);
-}
-
 /** The stiffness of points with other nodes. */
 void PointStiffness::start(int n, const int64_t *of)
 {
@@ -92,9 +87,7 @@ void PointStiffness::start(int n, const int64_t *of)
     if (constraints.plain[node] || transfer.whole)
       for (const auto &part : transfer.parts.of(node)) add(part.node);
     else
-      for (auto part = transfer.constrained.begin(node); part != transfer.constrained.end(node);
-           ++part)
-        add(part->node);
+      for (const auto &part : transfer.constrained.of(node)) add(part.node);
   }
   element.assign(local.size() * local.size() * width * width, 0.0);
   rim_local.clear();
@@ -112,13 +105,13 @@ void PointStiffness::project(const std::vector<int64_t> &of, const ConstrainedPa
   constexpr int WW = W * W;
   const std::size_t n = of.size();
   constexpr auto identity = [] {
-    ConstrainedParts::Part same{0, {}};
+    ConstrainedPart same{0, {}};
     for (int a = 0; a < W; a++) same.W[a * W + a] = 1.0;
     return same;
   }();
   const auto each_part = [&](std::size_t i, const auto &f) {
     if (constraints.plain[of[i]]) return f(number[i], identity.W);
-    for (auto part = parts.begin(of[i]); part != parts.end(of[i]); ++part) f(part->node, part->W);
+    for (const auto &part : parts.of(of[i])) f(part.node, part.W);
   };
   std::vector<int> to;
   for (std::size_t i = 0; i < n; i++)
@@ -169,14 +162,8 @@ void PointStiffness::flush()
   if (transfer.whole && held) (this->*projected)(current, transfer.constrained, local, element);
   const int n = local.size();
   for (int I = 0; I < n; I++)
-    for (int J = 0; J <= I; J++) {
-      const double *const K = element.data() + (I * n + J) * w * w;
-      // one triangle
-      const bool lower = local[I] >= local[J];
-      auto &to = lower ? blocks.at(local[I], local[J]) : blocks.at(local[J], local[I]);
-      for (int a = 0; a < w; a++)
-        for (int b = 0; b < w; b++) to.value[a * w + b] += lower ? K[a * w + b] : K[b * w + a];
-    }
+    for (int J = 0; J <= I; J++)
+      blocks.add_lower(local[I], local[J], element.data() + (I * n + J) * w * w, w);
   // of the rim, projected, between nodes of the same chunk
   std::vector<int64_t> of_rim;
   std::vector<int> in_rim;
@@ -261,11 +248,10 @@ void PointStiffness::add_point(int n, const int64_t *nodes, int ngrad, const dou
             g_of(part.node)[(l * w + a) * w + a] += part.weight * gradient[i * ngrad + l];
       continue;
     }
-    for (auto part = transfer.constrained.begin(nodes[i]);
-         part != transfer.constrained.end(nodes[i]); ++part)
+    for (const auto &part : transfer.constrained.of(nodes[i]))
       for (int l = 0; l < ngrad; l++)
         for (int ab = 0; ab < w * w; ab++)
-          g_of(part->node)[l * w * w + ab] += gradient[i * ngrad + l] * part->W[ab];
+          g_of(part.node)[l * w * w + ab] += gradient[i * ngrad + l] * part.W[ab];
   }
   static constexpr void (*projected_table[3][3])(int, const double *, const double *, double *) = {
       {add_projected_blocks<1, 1>, add_projected_blocks<1, 2>, add_projected_blocks<1, 3>},
@@ -306,12 +292,11 @@ void PointStiffness::add_mean(int64_t around, int kind, const double sums[3], in
       if (in_rim) std::copy_n(change, width, add_to_rim(smoother.in_rim(nodes[i])));
       continue;
     }
-    for (auto part = transfer.constrained.begin(nodes[i]);
-         part != transfer.constrained.end(nodes[i]); ++part)
-      add_part(width, part->W, true, 1.0, change, value_of(part->node));
+    for (const auto &part : transfer.constrained.of(nodes[i]))
+      add_part(width, part.W, true, 1.0, change, value_of(part.node));
     if (!in_rim) continue;
-    for (auto part = smoother.parts.begin(nodes[i]); part != smoother.parts.end(nodes[i]); ++part)
-      add_part(width, part->W, true, 1.0, change, add_to_rim(part->node));
+    for (const auto &part : smoother.parts.of(nodes[i]))
+      add_part(width, part.W, true, 1.0, change, add_to_rim(part.node));
   }
   head.count = (int) (means.values.size() - first);
   for (std::size_t k = first; k < means.values.size(); k++) place[means.values[k].node] = -1;
@@ -342,10 +327,6 @@ void PointStiffness::add_masses(const double *mass)
 
 double PointStiffness::memory_usage() const
 {
-  double bytes = blocks.memory_usage() + means.memory_usage() +
-      current.capacity() * sizeof(int64_t) +
-      (local.capacity() + place.capacity() + rim_local.capacity()) * sizeof(int);
-  for (const auto *list : {&element, &G, &KP, &rim_element})
-    bytes += list->capacity() * sizeof(double);
-  return bytes;
+  return blocks.memory_usage() + means.memory_usage() +
+      bytes_of(current, local, place, rim_local, element, G, KP, rim_element);
 }

@@ -27,7 +27,7 @@ class PointStiffness {
   {
   }
   /** To be called when the transfer knows its nodes. */
-  void setup();
+  void setup() { place.assign(transfer.mine.index.size(), -1); }
 
   BlockList blocks;    ///< of the level, of the part of this rank
   MeanTerms means;     ///< of nodes of this part

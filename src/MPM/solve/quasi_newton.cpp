@@ -121,16 +121,9 @@ void QuasiNewton::correct(const double *f, const double *z, double *d)
   std::copy_n(y_z, MOST, last_y_z);
 }
 
-void QuasiNewton::settle(const double *f, const double *z)
-{
-  look(f, z);
-}
-
 double QuasiNewton::memory_usage() const
 {
-  double reals = 0.0;
-  for (const auto *list : {&last_motion, &last_f, &last_z, &of_f, &of_z, &sum})
-    reals += list->capacity();
-  for (int b = 0; b < BLOCKS; b++) reals += S[b].capacity() + Y[b].capacity() + Z[b].capacity();
-  return reals * sizeof(double);
+  double bytes = bytes_of(last_motion, last_f, last_z, of_f, of_z, sum);
+  for (int b = 0; b < BLOCKS; b++) bytes += bytes_of(S[b], Y[b], Z[b]);
+  return bytes;
 }

@@ -10,6 +10,7 @@
 #define MPM_SOLVE_QUASI_NEWTON_H
 
 #include "solve/block_kernels.h"
+#include "solve/bytes_of.h"
 
 #include <cstdint>
 #include <vector>
@@ -45,7 +46,7 @@ class QuasiNewton {
   bool has_moved() const { return !last_motion.empty(); }
   /** Makes a pair of the noted motion, the remaining forces f, and z = H0 f, without a
    *  correction. */
-  void settle(const double *f, const double *z);
+  void settle(const double *f, const double *z) { look(f, z); }
   int pairs() const { return (int) order.size(); }
   double memory_usage() const;
 

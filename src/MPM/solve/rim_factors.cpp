@@ -236,12 +236,6 @@ bool RimFactors::factorize()
   return good;
 }
 
-/** Copies of a node share what it has, so that those in many chunks do not get too much. */
-double RimFactors::share(int node) const
-{
-  return 1.0 / std::sqrt(first[node + 1] - first[node]);
-}
-
 void RimFactors::solve(const double *b, double *x)
 {
   solutions.clear();
@@ -266,13 +260,8 @@ void RimFactors::solve(const double *b, double *x)
 
 double RimFactors::memory_usage() const
 {
-  double memory = (first.capacity() + bytes.capacity()) * sizeof(int) +
-      copies.capacity() * sizeof(Copy) + begin_of.capacity() * sizeof(int64_t) +
-      solutions.capacity() * sizeof(double);
+  double bytes = bytes_of(first, this->bytes, copies, begin_of, solutions);
   for (const auto &chunk : chunks)
-    if (chunk)
-      memory += chunk->nodes.capacity() * sizeof(int) +
-          chunk->entries.capacity() * sizeof(Eigen::Triplet<double>) +
-          chunk->factors.memory_usage();
-  return memory;
+    if (chunk) bytes += bytes_of(chunk->nodes, chunk->entries) + chunk->factors.memory_usage();
+  return bytes;
 }

@@ -81,11 +81,3 @@ void SharedNodes::gather(const std::vector<double> &owned_values, int width,
     from += width * sizeof(double);
   }
 }
-
-double SharedNodes::memory_usage() const
-{
-  constexpr double HASHED = sizeof(std::pair<const uint64_t, int>) + 2 * sizeof(void *);
-  return nodes.index.capacity() * sizeof(LatticeIndex) + nodes.number.size() * HASHED +
-      (place.capacity() + all_places.capacity() + counts.capacity() + sizes.capacity()) *
-      sizeof(int);
-}

@@ -42,7 +42,10 @@ class SharedNodes {
    *  Collective. */
   void gather(const std::vector<double> &owned_values, int width, std::vector<double> &all);
 
-  double memory_usage() const;
+  double memory_usage() const
+  {
+    return nodes.memory_usage() + bytes_of(place, all_places, counts, sizes);
+  }
 
  private:
   LatticeRanks &ranks;

@@ -83,10 +83,7 @@ bool SplineMultigrid::begin_again()
   if (!o.again) return false;
   o.points.blocks.zero();
   o.points.means.clear();
-  for (const auto &block : o.fixed) {
-    auto &to = o.points.blocks.at(block.row, block.column);
-    for (int ab = 0; ab < o.width * o.width; ab++) to.value[ab] += block.value[ab];
-  }
+  for (const auto &block : o.fixed) o.points.blocks.add(block, o.width);
   return true;
 }
 
@@ -135,10 +132,10 @@ void SplineMultigrid::Levels::set_blocks(const double *given)
     if (nodes.plain[node]) continue;
     const int k = transfer.parts.of(node).begin()->node;
     transfer.constrained.each_fixed(w, node, k, scale, [&](const MatrixBlock &block) {
-      auto &to = points.blocks.at(block.row, block.column);
+      points.blocks.at(block.row, block.column);
       if (!grid.owns(node)) return;
       fixed.push_back(block);
-      for (int ab = 0; ab < w * w; ab++) to.value[ab] += block.value[ab];
+      points.blocks.add(block, w);
     });
   }
 }
@@ -193,11 +190,10 @@ std::vector<MatrixBlock> SplineMultigrid::Levels::constraints_of_whole() const
   for (int64_t node = 0; node < grid.nnodes(); node++) {
     const int at = number[transfer.parts.of(node).begin()->node];
     if (!grid.owns(node) || at < 0 || nodes.plain[node]) continue;
-    const auto &parts = transfer.constrained;
-    for (auto part = parts.begin(node); part != parts.end(node); ++part) {
-      if (number[part->node] < 0) continue;
-      mine.push_back({at, number[part->node], {}});
-      std::copy_n(part->W, width * width, mine.back().value);
+    for (const auto &part : transfer.constrained.of(node)) {
+      if (number[part.node] < 0) continue;
+      mine.push_back({at, number[part.node], {}});
+      std::copy_n(part.W, width * width, mine.back().value);
     }
   }
   return mine;
@@ -277,7 +273,7 @@ int SplineMultigrid::place_in_whole(const LatticeIndex &index) const
   return on->whole.nodes.find(index);
 }
 
-void SplineMultigrid::solve_whole(double *b)
+void SplineMultigrid::solve_whole(std::vector<double> &b)
 {
   on->whole.solve(b);
 }
@@ -307,6 +303,5 @@ double SplineMultigrid::memory_usage() const
   const auto &o = *on;
   return o.nodes.memory_usage() + o.transfer.memory_usage() + o.smoother.memory_usage() +
       o.points.memory_usage() + o.coarse.memory_usage() + o.whole.memory_usage() +
-      o.in_system.capacity() + o.fixed.capacity() * sizeof(MatrixBlock) +
-      o.rest.capacity() * sizeof(double);
+      bytes_of(o.in_system, o.fixed, o.rest);
 }

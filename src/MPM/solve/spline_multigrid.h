@@ -87,7 +87,7 @@ class SplineMultigrid {
    *  operator begins, even if nodes have moved to other ranks. Collective. */
   int nodes_of_whole() const;
   int place_in_whole(const LatticeIndex &) const;
-  void solve_whole(double *b);
+  void solve_whole(std::vector<double> &b);
   int levels() const;
   double largest_eigenvalue() const;    ///< of A relative to the blocks
   double memory_usage() const;

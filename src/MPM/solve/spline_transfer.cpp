@@ -8,8 +8,6 @@
 
 #include "solve/spline_transfer.h"
 
-#include "solve/two_scale_relation.h"
-
 #include <algorithm>
 
 using namespace MPM_NS;
@@ -29,7 +27,7 @@ void SplineTransfer::setup(bool to_itself)
                   [&](const LatticeIndex &parent, double weight) {
                     parts.parts.push_back({mine.add(parent), weight});
                   });
-    parts.end_function();
+    parts.end_row();
   }
   const int ww = nodes.width * nodes.width;
   for (int64_t node = 0; node < grid.nnodes(); node++) {
@@ -53,7 +51,7 @@ void SplineTransfer::setup(bool to_itself)
           add(mine.add(parent), weight, P);
         });
       });
-    constrained.end_node();
+    constrained.end_row();
   }
 }
 
@@ -93,8 +91,8 @@ void SplineTransfer::restriction(const double *r, const double *done,
     double left[3];
     for (int a = 0; a < w; a++) left[a] = r[node * w + a] - (done ? done[node * w + a] : 0.0);
     if (!nodes.plain[node]) {
-      for (auto part = constrained.begin(node); part != constrained.end(node); ++part)
-        add_part(w, part->W, true, 1.0, left, partial.data() + part->node * w);
+      for (const auto &part : constrained.of(node))
+        add_part(w, part.W, true, 1.0, left, partial.data() + part.node * w);
       continue;
     }
     for (const auto &part : parts.of(node))
@@ -125,9 +123,9 @@ void SplineTransfer::prolongation(const std::vector<double> &x, const std::vecto
         if (const int from = number[part.node]; from >= 0)
           for (int a = 0; a < w; a++) motion[a] += part.weight * x[from * w + a];
     } else {
-      for (auto part = constrained.begin(node); part != constrained.end(node); ++part)
-        if (const int from = number[part->node]; from >= 0)
-          add_part(w, part->W, false, 1.0, x.data() + from * w, motion);
+      for (const auto &part : constrained.of(node))
+        if (const int from = number[part.node]; from >= 0)
+          add_part(w, part.W, false, 1.0, x.data() + from * w, motion);
     }
     for (int a = 0; a < w; a++) z[node * w + a] += motion[a];
   }

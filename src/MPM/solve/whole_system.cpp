@@ -81,29 +81,16 @@ bool WholeSystem::refill(const std::vector<MatrixBlock> &mine)
   return true;
 }
 
-void WholeSystem::project(double *x, bool transposed) const
+void WholeSystem::solve(std::vector<double> &given)
 {
-  const int w = width;
-  std::vector<double> before(x, x + nodes.index.size() * w);
-  for (const auto &part : constrained) std::fill_n(x + (std::size_t) part.row * w, w, 0.0);
-  for (const auto &part : constrained) {
-    const int from = transposed ? part.row : part.column, to = transposed ? part.column : part.row;
-    add_part(w, part.value, transposed, 1.0, before.data() + (std::size_t) from * w,
-             x + (std::size_t) to * w);
-  }
-}
-
-void WholeSystem::solve(double *given)
-{
-  project(given, true);
-  factors.solve(given, given);
-  project(given, false);
+  apply_constraints(width, constrained, true, given);
+  factors.solve(given.data(), given.data());
+  apply_constraints(width, constrained, false, given);
 }
 
 double WholeSystem::memory_usage() const
 {
-  return factors.memory_usage() + node_list_bytes(nodes) +
-      (constrained.capacity() + blocks.capacity()) * sizeof(MatrixBlock) +
-      slots.capacity() * sizeof(int) + matrix.nonZeros() * (sizeof(double) + sizeof(int)) +
-      matrix.rows() * sizeof(int) + (x.size() + b.size()) * sizeof(double);
+  return factors.memory_usage() + nodes.memory_usage() +
+      matrix.nonZeros() * (sizeof(double) + sizeof(int)) + matrix.rows() * sizeof(int) +
+      bytes_of(constrained, blocks, slots, x, b);
 }

@@ -28,8 +28,8 @@ class WholeSystem {
   LatticeNodes nodes;          ///< all of its nodes
   std::vector<double> b, x;    ///< [node][width]
 
-  /** The matrix of these nodes. constraints: of nodes that are not free, row u, column x of u = P x;
-   *  mine: blocks of this rank, row >= column. Collective. */
+  /** The matrix of these nodes. constraints: of nodes that are not free, row u, column x of u = P
+   *  x; mine: blocks of this rank, row >= column. Collective. */
   void build(LatticeNodes, const std::vector<MatrixBlock> &constraints,
              const std::vector<MatrixBlock> &mine);
   /** The matrix by other values of blocks; false, on all ranks: these are not in the same places,
@@ -45,7 +45,7 @@ class WholeSystem {
     if (!b.empty()) factors.solve(b.data(), x.data());
   }
   /** Replaces b [node][width] by P A^-1 P^T b. Collective. */
-  void solve(double *b);
+  void solve(std::vector<double> &b);
   double memory_usage() const;
 
  private:
@@ -55,8 +55,6 @@ class WholeSystem {
   BlockRows::Sparse matrix;
   std::vector<int> slots;    // places of entries in its values: of one triangle, and of the other
   EnvelopeFactors factors;
-
-  void project(double *x, bool transposed) const;
 };
 
 }    // namespace MPM_NS

@@ -6,8 +6,11 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_IMPLICIT_REPORT_H
-#define LMP_MPM_IMPLICIT_REPORT_H
+#ifndef LMP_MPM_IMPLICIT_PARTS_H
+#define LMP_MPM_IMPLICIT_PARTS_H
+
+#include "implicit/mpm_implicit_options.h"
+#include "implicit/mpm_solved_nodes.h"
 
 #include "platform.h"
 
@@ -16,8 +19,14 @@
 
 namespace LAMMPS_NS {
 
+class MPMConstraints;
+class MPMForceBalance;
+
 /** Result of an implicit step. */
 struct MPMImplicitReport {
+  /** Greatest asymmetry of tangents, for conjugate gradients. */
+  static constexpr double SYMMETRIC = 1.0e-3;
+
   bool converged = false;
   int iterations = 0, linear = 0, cuts = 0;
   int made = 0;          ///< number of times that levels, or factors, of a tangent were made
@@ -81,6 +90,16 @@ class MPMImplicitTimes {
 
  private:
   Clock *running = nullptr;
+};
+
+/** What all parts of an implicit step share. */
+struct MPMImplicitParts {
+  MPMSolvedNodes &nodes;
+  MPMForceBalance &balance;
+  MPMConstraints &constraints;
+  const MPMImplicitOptions &options;
+  MPMImplicitReport &report;
+  MPMImplicitTimes &times;
 };
 
 }    // namespace LAMMPS_NS

@@ -6,6 +6,59 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
+#include "implicit/mpm_point_motion.h"
+
+#include "field/mpm_affine.h"
+#include "field/mpm_passes.h"
+#include "field/mpm_stencil.h"
+
+#include "atom.h"
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+void MPMPointAccelerations::to_nodes(MPMSolvedNodes &nodes, std::vector<double> &a) const
+{
+  const int dim = nodes.width;
+  const double *const mass = nodes.lmp->atom->rmass;
+  a.assign(nodes.nreals(), 0.0);
+  for (auto &body : nodes.bodies) {
+    MPMField &field = body.field;
+    double *const values = &a[dim * body.first];
+    const MPMStencil stencil(field);
+    for (const auto &run : field.map->runs)
+      for (bigint i = run.first; i < run.last; i++) {
+        const double *const mine = rows[(int) i];
+        stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+          const double part = mass[i] * node.weight;
+          for (int d = 0; d < dim; d++) values[dim * node.number + d] += part * mine[d];
+        });
+      }
+    field.nodes.sum(values, dim, 0, dim);
+  }
+  for (int64_t k = 0; k < nodes.nreals(); k++)
+    a[k] = nodes.mass[k / dim] > 0.0 ? a[k] / nodes.mass[k / dim] : 0.0;
+}
+
+void MPMPointAccelerations::add_from_nodes(MPMSolvedNodes &nodes, std::vector<double> &change)
+{
+  const int dim = nodes.width;
+  for (auto &body : nodes.bodies) {
+    MPMField &field = body.field;
+    double *const values = &change[dim * body.first];
+    field.nodes.complete(values, dim, dim);
+    const MPMStencil stencil(field);
+    for (const auto &run : field.map->runs)
+      for (bigint i = run.first; i < run.last; i++) {
+        double *const mine = rows[(int) i];
+        stencil.visit(field.grid.blocks[run.slot], (int) i, [&](const MPMStencil::Node &node) {
+          for (int d = 0; d < dim; d++) mine[d] += node.weight * values[dim * node.number + d];
+        });
+      }
+  }
+  known = true;
+}
+
 /* ----------------------------------------------------------------------
    The mid-point rule with affine points. Nodes move by u = dt (v0 + v1)/2, and forces are those
    after u/2. They have no torque about the places of nodes at that time, sum (x_i + u_i/2) x f_i =
@@ -20,16 +73,6 @@
    Comput. Phys. 338 (2017) 137 for steps of this kind. For backward Euler, u = dt v1, the part with
    u is symmetric by itself.
 ------------------------------------------------------------------------- */
-
-#include "implicit/mpm_affine_midpoint.h"
-
-#include "atom.h"
-#include "field/mpm_affine.h"
-#include "field/mpm_passes.h"
-#include "field/mpm_stencil.h"
-
-using namespace LAMMPS_NS;
-using namespace MPM_NS;
 
 void MPMAffineMidpoint::find_changes(double step_dt, const std::vector<double> &velocity,
                                      const std::vector<double> &rest)
@@ -84,22 +127,20 @@ void MPMAffineMidpoint::find_changes(MPMSolvedNodes::Body &body)
 
 void MPMAffineMidpoint::change_points()
 {
-  for (auto &body : nodes.bodies)
-    if (body.field.affine) change_points(body.field);
-}
-
-void MPMAffineMidpoint::change_points(MPMField &of)
-{
-  const double kinetic = of.ledger.on ? of.ledger.point_kinetic_energy() : 0.0;
   const int dim = nodes.width, square = dim * dim;
-  for (const auto &run : of.map->runs)
-    for (bigint i = run.first; i < run.last; i++) {
-      const double *const more = &of_points[i * (dim + square)];
-      for (int d = 0; d < dim; d++) nodes.lmp->atom->v[i][d] += more[d];
-      for (int k = 0; k < square; k++) of.affine->C[i][k] += more[dim + k];
-    }
-  if (!of.ledger.on) return;
-  const double gained = of.ledger.point_kinetic_energy() - kinetic;
-  of.ledger.transfer += gained;
-  of.ledger.take(-gained);
+  for (auto &body : nodes.bodies) {
+    MPMField &of = body.field;
+    if (!of.affine) continue;
+    const double kinetic = of.ledger.on ? of.ledger.point_kinetic_energy() : 0.0;
+    for (const auto &run : of.map->runs)
+      for (bigint i = run.first; i < run.last; i++) {
+        const double *const more = &of_points[i * (dim + square)];
+        for (int d = 0; d < dim; d++) nodes.lmp->atom->v[i][d] += more[d];
+        for (int k = 0; k < square; k++) of.affine->C[i][k] += more[dim + k];
+      }
+    if (!of.ledger.on) continue;
+    const double gained = of.ledger.point_kinetic_energy() - kinetic;
+    of.ledger.transfer += gained;
+    of.ledger.take(-gained);
+  }
 }
