@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -20,7 +20,8 @@ double body(Scene &run, int k)
   return run.fix("body")->compute_vector(k);
 }
 
-/** A cylinder or sphere of radius 0.2 in a container of radius 0.47 that is full, released under gravity. */
+/** A cylinder or sphere of radius 0.2 in a container of radius 0.47 that is full, released under
+ *  gravity. */
 std::string gap(int dim, int n, double density, const char *units, double g, double g_body)
 {
   const char *const center = dim == 3 ? "0.503 0.511 0.49" : "0.503 0.511 0";
@@ -37,7 +38,8 @@ std::string gap(int dim, int n, double density, const char *units, double g, dou
       strprintf("fix g all gravity %.17g vector 0 -1 0\n", g);
 }
 
-/** Water 0.4 deep in a tank of 2 x 0.8, with a box of 0.4 x 0.2 of half its density about a place that is no node. */
+/** Water 0.4 deep in a tank of 2 x 0.8, with a box of 0.4 x 0.2 of half its density about a place
+ *  that is no node. */
 std::string boat(double h, double density, double y, const std::string &options)
 {
   const auto hull = strprintf("block 0.8137 1.2137 %.17g %.17g INF INF", y - 0.1, y + 0.1);
@@ -52,8 +54,8 @@ std::string boat(double h, double density, double y, const std::string &options)
 
 }    // namespace
 
-// what is lighter or heavier than water sets this in motion, too: the mass of a body and its added mass, which for a light one is
-// all that there is
+// what is lighter or heavier than water sets this in motion, too: the mass of a body and its added
+// mass, which for a light one is all that there is
 SERIAL_TEST(Body, IsReleased)
 {
   constexpr double a = 0.2, b = 0.47, g = 9.81;
@@ -87,8 +89,8 @@ SERIAL_TEST(Units, IsReleased)
   }
 }
 
-// what is pushed goes on, in a flow that follows it without friction: it must not be braked by the number of steps, as with apic, which
-// took 15 and 38 % here
+// what is pushed goes on, in a flow that follows it without friction: it must not be braked by the
+// number of steps, as with apic, which took 15 and 38 % here
 SERIAL_TEST(Body, GoesOn)
 {
   for (const int nsteps : {100, 400}) {
@@ -103,7 +105,8 @@ SERIAL_TEST(Body, GoesOn)
   }
 }
 
-// Archimedes: it goes down as far as its weight is that of the water, with 1.5 and 3 cells in its depth, and nothing moves it then
+// Archimedes: it goes down as far as its weight is that of the water, with 1.5 and 3 cells in its
+// depth, and nothing moves it then
 SERIAL_TEST(Boat, Floats)
 {
   for (const double h : {0.04, 0.02}) {
@@ -123,7 +126,8 @@ SERIAL_TEST(Boat, Floats)
   }
 }
 
-// A torque heels it until the water rights it as far: m g (GM + tan^2/2 BM) sin of a box, with GM = BM + KB - KG
+// A torque heels it until the water rights it as far: m g (GM + tan^2/2 BM) sin of a box, with GM =
+// BM + KB - KG
 SERIAL_TEST(Boat, Heels)
 {
   constexpr double angle = 0.1, B = 0.4, depth = 0.1, BM = B * B / (12.0 * depth);
@@ -190,8 +194,8 @@ SERIAL_TEST(Body, KeepsPointsOut)
   EXPECT_GT(std::fabs(body(run, MATRIX + 3)), 0.01);
 }
 
-// a stone that comes to the floor goes on, and two that meet go through each other, which a warning tells, but once; a piston
-// that is in a wall from the start is one
+// a stone that comes to the floor goes on, and two that meet go through each other, which a warning
+// tells, but once; a piston that is in a wall from the start is one
 SERIAL_TEST(Body, WarnsOfWhatItTouches)
 {
   const std::string say = "touch neither each other nor walls",

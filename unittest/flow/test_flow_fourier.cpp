@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi input
 // mpi: 1 3
 
-// Fix mpm/incompressible solver fourier: iterations in boxes and in other shapes, flows against those with multigrid.
+// Fix mpm/incompressible solver fourier: iterations in boxes and in other shapes, flows against
+// those with multigrid.
 
 #include "mpm_lammps.h"
 
@@ -17,8 +18,8 @@ namespace {
 /** Entries of the vector of the fix. */
 enum { ITERATIONS, RESIDUAL, DIVERGENCE, FILLED, WET };
 
-/** Points on n cells per length in a box of the given lengths, where the variable wet is not 0, with a flow that is not smooth
- *  and has a divergence. */
+/** Points on n cells per length in a box of the given lengths, where the variable wet is not 0,
+ *  with a flow that is not smooth and has a divergence. */
 std::string water(int dim, const std::string &faces, int n, const std::string &lengths,
                   const std::string &wet)
 {
@@ -64,7 +65,8 @@ std::string splashes()
 
 }    // namespace
 
-// the transforms solve the equations themselves, with walls and periods of even and odd numbers of cells
+// the transforms solve the equations themselves, with walls and periods of even and odd numbers of
+// cells
 TEST(Fourier, OneIterationInFullBoxes)
 {
   for (const char *faces : {"p p", "f f", "p f", "f p"})
@@ -78,7 +80,8 @@ TEST(Fourier, OneIterationInFullBoxes)
         << faces;
 }
 
-// the surface is at the edge of the box around the water, up to the part of a cell that its distance differs from one half
+// the surface is at the edge of the box around the water, up to the part of a cell that its
+// distance differs from one half
 TEST(Fourier, FewIterationsInFlatLayers)
 {
   for (const int n : {32, 64})
@@ -90,8 +93,8 @@ TEST(Fourier, FewIterationsInFlatLayers)
   EXPECT_LE(iterations(water(3, "f p f", 12, "0 1 0 1 0 1", "(x>0.46)") + flow(12, SOLVER), 1), 8);
 }
 
-// O7: with cosines for all of the tank, and surfaces a cell away, there are 14, 18, and 22; 15, 19, and 25; 28, 39, and 53.
-// 1.5 times as many are asked for
+// O7: with cosines for all of the tank, and surfaces a cell away, there are 14, 18, and 22; 15, 19,
+// and 25; 28, 39, and 53. 1.5 times as many are asked for
 TEST(Fourier, IterationsInOtherShapes)
 {
   const std::string shapes[] = {"(y<0.4+0.2*x)", "((x-0.5)^2+(y-0.5)^2<0.09)", splashes()};
@@ -111,7 +114,8 @@ TEST(Fourier, IterationsInOtherShapes)
   }
 }
 
-// flows do not depend on the solver: pools and a drop, a solid region, two liquids, gas, a viscosity
+// flows do not depend on the solver: pools and a drop, a solid region, two liquids, gas, a
+// viscosity
 TEST(Fourier, SameFlowAsWithMultigrid)
 {
   const struct {
@@ -142,7 +146,8 @@ TEST(Fourier, SameFlowAsWithMultigrid)
   }
 }
 
-// with parts of the box that move from rank to rank, the iterations are the same, and the flow is to the tolerance
+// with parts of the box that move from rank to rank, the iterations are the same, and the flow is
+// to the tolerance
 TEST(Fourier, SameOnRanks)
 {
   for (const int dim : {2, 3}) {
@@ -159,7 +164,8 @@ TEST(Fourier, SameOnRanks)
 // closed pools, whose pressures are determined up to constants; a single cell; no water at all
 TEST(Fourier, SmallestFlows)
 {
-  // a wall of no thickness cannot be made of points: two pools at the two ends of a full box with a solid block
+  // a wall of no thickness cannot be made of points: two pools at the two ends of a full box with a
+  // solid block
   const std::string block = "region block block 0.4 0.6 INF INF INF INF\n";
   const int many = iterations(water(2, "f f", 20, "0 1 0 1", "(x<0.4||x>0.6)") + block +
                               flow(20, SOLVER + " region block"));

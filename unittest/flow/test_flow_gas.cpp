@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Gas in pockets of fix mpm/incompressible: water on springs of gas, bubbles, water that rests on it, pockets that split and join.
+// Gas in pockets of fix mpm/incompressible: water on springs of gas, bubbles, water that rests on
+// it, pockets that split and join.
 
 #include "mpm_lammps.h"
 
@@ -33,7 +34,8 @@ double frequency(const std::vector<double> &t, const std::vector<double> &of)
                           : 0.0;
 }
 
-/** Water of the density 1 and the length 0.4 in the middle of a closed tube of the length 1, which has n cells in its width of 0.2. */
+/** Water of the density 1 and the length 0.4 in the middle of a closed tube of the length 1, which
+ *  has n cells in its width of 0.2. */
 std::string slug(int dim, int n, double offset, const std::string &units = "lj")
 {
   const double h = 0.2 / n;
@@ -44,7 +46,8 @@ std::string slug(int dim, int n, double offset, const std::string &units = "lj")
       strprintf("create_points 1 region w spacing %.17g outside ignore\n", 0.5 * h);
 }
 
-/** Water between the radii 1 and 2, with gas inside and open air outside, which is blown up at first. */
+/** Water between the radii 1 and 2, with gas inside and open air outside, which is blown up at
+ *  first. */
 std::string shell(int dim, int n)
 {
   const double h = 1.0 / n;
@@ -62,7 +65,8 @@ std::string shell(int dim, int n)
   return text + strprintf("fix w all mpm/incompressible %.17g 1 gas 1 1.4 open xlo open yhi\n", h);
 }
 
-/** A tube like the letter U, 1.2 high, of which the right arm is closed. Water stands at these heights; n cells in the width of an arm. */
+/** A tube like the letter U, 1.2 high, of which the right arm is closed. Water stands at these
+ *  heights; n cells in the width of an arm. */
 std::string tube(int n, double left, double right)
 {
   const double h = 0.4 / n;
@@ -92,7 +96,8 @@ std::string splash(const std::string &gas_of)
 
 }    // namespace
 
-// omega^2 = gamma p A (1/l + 1/l) / m, of second order in time, and without a loss of energy but for 0.07 omega dt per period
+// omega^2 = gamma p A (1/l + 1/l) / m, of second order in time, and without a loss of energy but
+// for 0.07 omega dt per period
 SERIAL_TEST(Slug, Swings)
 {
   const double exact = std::sqrt(1.4 * 10.0 * (2.0 / 0.3) / 0.4);
@@ -134,7 +139,8 @@ SERIAL_TEST(Slug, LongSteps)
   EXPECT_NEAR(gas(run, HIGHEST), 1000.0, 10.0);
 }
 
-// pressures on walls, of gas and of water that it pushes, and energies in all units; gas of constant temperature
+// pressures on walls, of gas and of water that it pushes, and energies in all units; gas of
+// constant temperature
 SERIAL_TEST(Slug, Units)
 {
   for (const char *units : {"si", "metal", "real", "lj"})
@@ -246,7 +252,8 @@ SERIAL_TEST(Tube, AtRest)
   EXPECT_LT(error[1], 0.7 * error[0]);
 }
 
-// at rest: the head between the levels in and around a bell, and its lift, that of gas and walls in the water
+// at rest: the head between the levels in and around a bell, and its lift, that of gas and walls in
+// the water
 SERIAL_TEST(Bell, Lift)
 {
   Scene run(
@@ -313,7 +320,8 @@ SERIAL_TEST(Splash, KeepsGas)
   EXPECT_NEAR(gas(run, HIGHEST), 1e5, 5e3);
 }
 
-// a lid of water falls on two columns: the air between them was open, and has the pressure outside when it is closed in
+// a lid of water falls on two columns: the air between them was open, and has the pressure outside
+// when it is closed in
 SERIAL_TEST(Pocket, TakesAirFromOutside)
 {
   Scene run(plane("lj", "f f", "0 1 0 1.2", 1, 0.02) +

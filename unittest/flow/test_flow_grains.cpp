@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Grains of fix mpm/immersed in a flow of fix mpm/incompressible: drag, buoyancy, suspensions, beds.
+// Grains of fix mpm/immersed in a flow of fix mpm/incompressible: drag, buoyancy, suspensions,
+// beds.
 
 #include "mpm_lammps.h"
 
@@ -34,7 +35,8 @@ std::string flow(const std::string &options, const std::string &laws)
       "\nfix drag grains mpm/immersed w 1.0 " + laws + "\n";
 }
 
-/** Drag on a single sphere (Schiller and Naumann) of the diameter d with the velocity v in a fluid of density 1. */
+/** Drag on a single sphere (Schiller and Naumann) of the diameter d with the velocity v in a fluid
+ *  of density 1. */
 double schiller(double d, double v, double mu)
 {
   return 3.0 * PI * mu * d * v * (1.0 + 0.15 * std::pow(v * d / mu, 0.687));
@@ -58,8 +60,9 @@ double ergun(double d, double w, double mu, double solid)
   return solid * (150.0 * mu * solid / (d * d) + 1.75 * w / d) * w / cube;
 }
 
-/** Velocity of viscous fluid at a point force F along z which has moved with the velocity v in a periodic box for a time t (C.W. Oseen),
- *  where quadratic splines along z and hats along x and y spread the force and interpolate the velocity. */
+/** Velocity of viscous fluid at a point force F along z which has moved with the velocity v in a
+ *  periodic box for a time t (C.W. Oseen), where quadratic splines along z and hats along x and y
+ *  spread the force and interpolate the velocity. */
 double dragged_along(double F, double v, double mu, double t, const double *box)
 {
   const auto sinc = [](double k) {
@@ -95,8 +98,8 @@ std::string array(int n, const std::string &y, double d, double density,
 
 }    // namespace
 
-// A single sphere sinks with the velocity of the law, and with what it drags along of the fluid in its own cells; in steps
-// that are longer than its time of relaxation, too
+// A single sphere sinks with the velocity of the law, and with what it drags along of the fluid in
+// its own cells; in steps that are longer than its time of relaxation, too
 SERIAL_TEST(Grain, SinksWithTheTerminalVelocity)
 {
   struct Case {
@@ -134,8 +137,9 @@ SERIAL_TEST(Grain, SinksWithTheTerminalVelocity)
   }
 }
 
-// A closed column of fluid: discs settle with the terminal velocity times eps^4.65 in slow flow (Richardson and Zaki; the exponent is
-// that of Wen and Yu), as the flux of fluid and grains together is zero
+// A closed column of fluid: discs settle with the terminal velocity times eps^4.65 in slow flow
+// (Richardson and Zaki; the exponent is that of Wen and Yu), as the flux of fluid and grains
+// together is zero
 SERIAL_TEST(Suspension, IsHindered)
 {
   const double d = 0.05, mu = 0.1, g = 1.0;
@@ -157,7 +161,8 @@ SERIAL_TEST(Suspension, IsHindered)
   }
 }
 
-// A bed that fills half of a periodic column, driven by a force on the fluid: Ergun's law for the flux, in steps of any length
+// A bed that fills half of a periodic column, driven by a force on the fluid: Ergun's law for the
+// flux, in steps of any length
 SERIAL_TEST(Bed, HasThePressureDropOfErgun)
 {
   const double d = 0.25, pull = 0.5, solid = 12.25 * 0.25 * PI * d * d;
@@ -192,8 +197,8 @@ SERIAL_TEST(Bed, DoesNotDependOnTheStep)
   EXPECT_NEAR(measured("flux in long steps / in short ones", flux[1] / flux[0]), 1.0, 1e-3);
 }
 
-// In water at rest a grain feels the weight of what it displaces, to the last digits, and the floor bears it; so do grains on the
-// floor
+// In water at rest a grain feels the weight of what it displaces, to the last digits, and the floor
+// bears it; so do grains on the floor
 SERIAL_TEST(Tank, BearsTheBuoyancy)
 {
   const double d = 0.3, g = 9.81, area = 0.25 * PI * d * d;
@@ -232,8 +237,8 @@ SERIAL_TEST(Grain, GoesWithFluidThatAccelerates)
       1.0, 1e-6);
 }
 
-// What grains get the fluid loses, to round-off: points that are even tell cells their momentum without a difference, so in the
-// first step
+// What grains get the fluid loses, to round-off: points that are even tell cells their momentum
+// without a difference, so in the first step
 SERIAL_TEST(Grain, KeepsMomentum)
 {
   for (const int dim : {2, 3})
@@ -266,8 +271,9 @@ SERIAL_TEST(Grain, KeepsMomentum)
     }
 }
 
-/** A wave between a suspension, 5 % of discs, and the water above or below it in a closed tank with n cells: frequency over that of liquids, of
- *  which one has the density rho + (rho_s - rho) phi. */
+/** A wave between a suspension, 5 % of discs, and the water above or below it in a closed tank with
+ *  n cells: frequency over that of liquids, of which one has the density rho + (rho_s - rho)
+ *  phi. */
 double wave_of_suspension(int n, double density, const std::string &options)
 {
   const bool heavy = density > 1.0;
@@ -303,7 +309,8 @@ double wave_of_suspension(int n, double density, const std::string &options)
       0.5 * PI / time / w);
 }
 
-// grains weigh what they do in the fluid that they displace: of first order, as the interface is as thick as the mapping of grains
+// grains weigh what they do in the fluid that they displace: of first order, as the interface is as
+// thick as the mapping of grains
 SERIAL_TEST(Suspension, WeighsWhatItDoes)
 {
   EXPECT_GT(wave_of_suspension(16, 3.0, ""), 1.1);    // the miss that the manual tells of
@@ -314,7 +321,8 @@ SERIAL_TEST(Suspension, WeighsWhatItDoes)
   EXPECT_NEAR(wave_of_suspension(16, 0.2, "displace yes"), 1.0, 0.08);
 }
 
-// Grains that the flow carries do not make it viscous: a shear wave with many light, stiff ones in it decays as one without
+// Grains that the flow carries do not make it viscous: a shear wave with many light, stiff ones in
+// it decays as one without
 SERIAL_TEST(Suspension, IsNotViscousByItself)
 {
   double left[2];
@@ -372,7 +380,8 @@ SERIAL_TEST(Units, HaveTheForces)
   }
 }
 
-// A suspension with contacts that falls through a surface: on four ranks, from restart files, and with grains alone in the lists of neighbors
+// A suspension with contacts that falls through a surface: on four ranks, from restart files, and
+// with grains alone in the lists of neighbors
 std::string falling(int dim)
 {
   std::string grains;
@@ -486,7 +495,8 @@ SERIAL_TEST(Grain, BadInput)
                 .size(),
             0u);
 
-  // a weight of each group of grains is the same as one of all; one that varies is none before the first forces
+  // a weight of each group of grains is the same as one of all; one that varies is none before the
+  // first forces
   const std::string fits = scene + w + d + "1.0 0.1 gravity 0 -1 0",
                     left = "region left block INF 2 INF INF INF INF\n"
                            "group left region left\ngroup right subtract all left\n";

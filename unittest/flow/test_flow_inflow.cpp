@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Points of fix mpm/emit that come into a flow of fix mpm/incompressible, and those that fix mpm/absorb takes away.
+// Points of fix mpm/emit that come into a flow of fix mpm/incompressible, and those that fix
+// mpm/absorb takes away.
 
 #include "mpm_lammps.h"
 
@@ -57,8 +58,8 @@ std::string filled(double h, const char *mouth, const char *velocity,
 
 }    // namespace
 
-// A channel that is as wide as its mouth: all points have the velocity of the inflow, to the last digits, and as much goes as
-// comes; in all directions
+// A channel that is as wide as its mouth: all points have the velocity of the inflow, to the last
+// digits, and as much goes as comes; in all directions
 SERIAL_TEST(Channel, IsSteady)
 {
   for (const int dim : {2, 3})
@@ -83,7 +84,8 @@ SERIAL_TEST(Channel, IsSteady)
       }
 }
 
-// A mouth that covers 5.5 of 8 cells: behind it, the mean velocity is less by as much from the first steps on
+// A mouth that covers 5.5 of 8 cells: behind it, the mean velocity is less by as much from the
+// first steps on
 SERIAL_TEST(Channel, IsWiderThanItsMouth)
 {
   Scene run(
@@ -103,7 +105,8 @@ SERIAL_TEST(Channel, IsWiderThanItsMouth)
   EXPECT_LT(measured("divergence", run.fix("w")->compute_vector(DIVERGENCE)), 1e-6);
 }
 
-// A channel between regions that cut cells in the middle: as much flows as comes, and not what is left of it in cut cells
+// A channel between regions that cut cells in the middle: as much flows as comes, and not what is
+// left of it in cut cells
 SERIAL_TEST(Channel, BetweenRegions)
 {
   Scene run(
@@ -122,7 +125,8 @@ SERIAL_TEST(Channel, BetweenRegions)
   EXPECT_NEAR(measured("mean velocity / inflow", sum / n / 0.37), 1.0, 0.005);
 }
 
-// With friction at its walls, the flow in the channel becomes that of Poiseuille, of the rate that comes
+// With friction at its walls, the flow in the channel becomes that of Poiseuille, of the rate that
+// comes
 SERIAL_TEST(Channel, BecomesPoiseuille)
 {
   for (const char *viscosity : {"400.0", "1e6 implicit yes"}) {
@@ -146,8 +150,8 @@ SERIAL_TEST(Channel, BecomesPoiseuille)
   }
 }
 
-// What comes out of a mouth makes the water rise by its volume: at a wall below the surface, amid the water, and from above; the
-// section is no multiple of cells
+// What comes out of a mouth makes the water rise by its volume: at a wall below the surface, amid
+// the water, and from above; the section is no multiple of cells
 SERIAL_TEST(Tank, Rises)
 {
   struct Case {
@@ -213,8 +217,9 @@ SERIAL_TEST(Tank, BearsWhatIsPoured)
               1.0, 0.02);
 }
 
-// A sheet of honey that hangs from its mouth: what has come by the time s bears its weight from then on, and stretches by
-// 4 mu (Trouton), so that it is 1/(1 - b s (t - s)) times as long at t, b = rho g U/(4 mu)
+// A sheet of honey that hangs from its mouth: what has come by the time s bears its weight from
+// then on, and stretches by 4 mu (Trouton), so that it is 1/(1 - b s (t - s)) times as long at t, b
+// = rho g U/(4 mu)
 SERIAL_TEST(Sheet, HangsFromItsMouth)
 {
   constexpr double t = 40.0, U = 1.0, mu = 1000.0, b = 7.5e-4;

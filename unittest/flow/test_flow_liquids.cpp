@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 3 4
 
-// Liquids of several densities and viscosities in fix mpm/incompressible: layers at rest, waves between them, layers that turn over,
-// and shear of layers; with bodies that float between them, and with inflow.
+// Liquids of several densities and viscosities in fix mpm/incompressible: layers at rest, waves
+// between them, layers that turn over, and shear of layers; with bodies that float between them,
+// and with inflow.
 
 #include "mpm_lammps.h"
 
@@ -19,7 +20,8 @@ namespace {
 
 enum { ITERATIONS = 0, FILLED = 3, KINETIC = 5, FASTEST = 6, YLO = 9, STRESS = 13 };
 
-/** A closed square of two layers, whose interface has the shape a cos(pi x); the lower one has the density below. */
+/** A closed square of two layers, whose interface has the shape a cos(pi x); the lower one has the
+ *  density below. */
 std::string layers(int n, double below, double above, double a)
 {
   const double s = 2.0 * std::sinh(PI / 2);
@@ -94,15 +96,16 @@ struct Layers {
                       1.0 / n, rho[0], mu[0], rho[1], mu[1], upper, upper);
     return text + wall + " " + options + "\n";
   }
-  /** Velocity of the steady flow at y with this shear stress at the lower plate and weight along the plates. */
+  /** Velocity of the steady flow at y with this shear stress at the lower plate and weight along
+   *  the plates. */
   double steady(double y, double stress, double g) const
   {
     const double low = std::min(y, interface()), more = y - low, above = stress - rho[0] * g * low;
     return (stress * low - 0.5 * rho[0] * g * low * low) / mu[0] +
         (above * more - 0.5 * rho[1] * g * more * more) / mu[1];
   }
-  /** Root mean square of the error of velocities over that of the velocities, for this speed of the upper plate; and the largest
-   *  error of shear stresses over that at the lower plate. */
+  /** Root mean square of the error of velocities over that of the velocities, for this speed of the
+   *  upper plate; and the largest error of shear stresses over that at the lower plate. */
   std::array<double, 2> errors(Scene &run, double speed, double g) const
   {
     const double at_rest = steady(1.0, 0.0, g),
@@ -120,8 +123,8 @@ struct Layers {
   }
 };
 
-/** Two liquids between a cylinder of radius 0.2 that turns and one of radius 0.45, with a round interface: root mean square of the
- *  error of velocities over that of the velocities. */
+/** Two liquids between a cylinder of radius 0.2 that turns and one of radius 0.45, with a round
+ *  interface: root mean square of the error of velocities over that of the velocities. */
 double between_cylinders(int n, double inner, double outer)
 {
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.01) +
@@ -150,8 +153,8 @@ double between_cylinders(int n, double inner, double outer)
                   std::sqrt(sum / square));
 }
 
-/** Mean velocity over that of theory in a round pipe of radius 1 with a core of another liquid of radius 0.6, whose weight drives
- *  them; the outer liquid has the density 1000. */
+/** Mean velocity over that of theory in a round pipe of radius 1 with a core of another liquid of
+ *  radius 0.6, whose weight drives them; the outer liquid has the density 1000. */
 double core_in_pipe(int n, double inner, double outer, double density)
 {
   constexpr double x0 = 0.017, y0 = 0.031, c = 0.6, G = 1e-9;
@@ -191,7 +194,8 @@ std::string column(const std::string &options, double fraction, double max)
                 fraction, max);
 }
 
-/** Largest relative growth of the energy of points in a step; and the most iterations for pressure and stresses. */
+/** Largest relative growth of the energy of points in a step; and the most iterations for pressure
+ *  and stresses. */
 double energy_growth(Scene &run, int nsteps, double *iterations)
 {
   double before = 1e30, most = 0.0;
@@ -263,7 +267,8 @@ SERIAL_TEST(Liquids, TurnOver)
   EXPECT_NEAR(measured("rate over theory", std::acosh(amplitude(run) / before) / 2.0), 1.0, 0.05);
 }
 
-// a column of water collapses under a fluid that is a thousand times lighter: its energy never grows
+// a column of water collapses under a fluid that is a thousand times lighter: its energy never
+// grows
 SERIAL_TEST(Liquids, LightAndHeavy)
 {
   Scene run(column("liquid air 1", 0.4, 0.01));
@@ -274,8 +279,9 @@ SERIAL_TEST(Liquids, LightAndHeavy)
   EXPECT_LT(measured("speed", run.fix("w")->compute_vector(FASTEST)), 20.0);
 }
 
-// The shear stress is the same in both layers, so that the velocity is right wherever their interface is in a cell, along both axes;
-// at the middle of cells, where points interpolate, it has a kink
+// The shear stress is the same in both layers, so that the velocity is right wherever their
+// interface is in a cell, along both axes; at the middle of cells, where points interpolate, it has
+// a kink
 SERIAL_TEST(Shear, Couette)
 {
   constexpr double speed = 1e-9;
@@ -309,7 +315,8 @@ SERIAL_TEST(Shear, Couette)
         }
 }
 
-// explicit steps, from rest; a tenth of the largest viscosity over density limits them as it does one liquid
+// explicit steps, from rest; a tenth of the largest viscosity over density limits them as it does
+// one liquid
 SERIAL_TEST(Shear, ExplicitCouette)
 {
   constexpr double speed = 1e-9;
@@ -344,8 +351,8 @@ SERIAL_TEST(Shear, Poiseuille)
     }
 }
 
-// A wave of shear in two layers decays as theory says, by what friction takes from it: with u = sin(k y) in each, lambda = nu k^2, and
-// one stress
+// A wave of shear in two layers decays as theory says, by what friction takes from it: with u =
+// sin(k y) in each, lambda = nu k^2, and one stress
 SERIAL_TEST(Shear, Decay)
 {
   LONG_CASE();
@@ -400,9 +407,9 @@ SERIAL_TEST(Shear, Decay)
   }
 }
 
-/** Growth of the wave with the wave number k between half spaces (S. Chandrasekhar, Hydrodynamic and Hydromagnetic Stability,
- *  1961, chapter X): the solution n of the conditions at the interface, for velocities A exp(-k |y|) + B exp(-q |y|) on each
- *  side. rho, mu: below, above. */
+/** Growth of the wave with the wave number k between half spaces (S. Chandrasekhar, Hydrodynamic
+ *  and Hydromagnetic Stability, 1961, chapter X): the solution n of the conditions at the
+ *  interface, for velocities A exp(-k |y|) + B exp(-q |y|) on each side. rho, mu: below, above. */
 double growth_rate(double k, double g, const double *rho, const double *mu)
 {
   const auto determinant = [&](double n) {
@@ -424,7 +431,8 @@ double growth_rate(double k, double g, const double *rho, const double *mu)
   return low;
 }
 
-// A heavy liquid above a light one whose viscosity is the same per density, or a tenth: waves grow as they should.
+// A heavy liquid above a light one whose viscosity is the same per density, or a tenth: waves grow
+// as they should.
 SERIAL_TEST(Shear, GrowthOfWaves)
 {
   constexpr int N = 16;
@@ -470,8 +478,8 @@ SERIAL_TEST(Shear, CoreInPipe)
   EXPECT_NEAR(core_in_pipe(8, 10.0, 1.0, 1000.0), 1.0, 0.01);
 }
 
-// honey in a fluid that is a thousand times lighter and thinner: the equations converge, and energy never grows; with explicit steps at
-// the limit of fix mpm/dt, too
+// honey in a fluid that is a thousand times lighter and thinner: the equations converge, and energy
+// never grows; with explicit steps at the limit of fix mpm/dt, too
 SERIAL_TEST(Shear, ThickAndThin)
 {
   for (const char *options : {"viscosity 10 implicit yes liquid air 1 0.01",

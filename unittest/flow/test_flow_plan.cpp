@@ -1,9 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
-// The step of an incompressible flow without a fix: what its stages read and write, and points against those of the fix.
+// The step of an incompressible flow without a fix: what its stages read and write, and points
+// against those of the fix.
 
 #include "mpm_lammps.h"
 

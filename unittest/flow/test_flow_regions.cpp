@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -38,7 +38,8 @@ std::string floor_and_ball(int dim, int n, const std::string &options)
       "\nfix g all gravity 9.81 vector 0 -1 0\n";
 }
 
-/** Water between a cylinder or sphere of radius 0.2, which begins to move with the speed 0.1, and a container of radius 0.47. */
+/** Water between a cylinder or sphere of radius 0.2, which begins to move with the speed 0.1, and a
+ *  container of radius 0.47. */
 std::string gap(int dim, int n, double dt)
 {
   const char *const center = dim == 3 ? "0.503 0.511 0.49" : "0.503 0.511 0";
@@ -69,7 +70,8 @@ std::string canal(int n, double angle)
 
 }    // namespace
 
-// water at rest over a floor that is no plane of nodes stays at rest, and carries what it should; Archimedes
+// water at rest over a floor that is no plane of nodes stays at rest, and carries what it should;
+// Archimedes
 SERIAL_TEST(Regions, AtRest)
 {
   for (const int dim : {2, 3}) {
@@ -92,7 +94,8 @@ SERIAL_TEST(Regions, AtRest)
   }
 }
 
-// what is in the way of a cylinder or sphere that begins to move: potential flow in the gap, and its added mass
+// what is in the way of a cylinder or sphere that begins to move: potential flow in the gap, and
+// its added mass
 SERIAL_TEST(Regions, PotentialFlow)
 {
   constexpr double a = 0.2, b = 0.47, U = 0.1, dt = 1e-6;
@@ -210,8 +213,9 @@ TEST(Regions, RanksAndRestart)
   }
 }
 
-// A container that is moved pushes on its water with the force that accelerates it, in each step, wherever walls are in their cells: full, and with
-// a surface that is inclined by the acceleration over the weight; at a constant speed with no force
+// A container that is moved pushes on its water with the force that accelerates it, in each step,
+// wherever walls are in their cells: full, and with a surface that is inclined by the acceleration
+// over the weight; at a constant speed with no force
 SERIAL_TEST(Regions, MovedTank)
 {
   struct Case {

@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit mpi ranks
 // mpi: 1 4
 
-// Equations of cells by lists of them: against vectors that are known, and against multigrid on the lattice.
+// Equations of cells by lists of them: against vectors that are known, and against multigrid on the
+// lattice.
 
 #include "mpm_lammps.h"
 
@@ -30,7 +31,8 @@ double noise(const Grid &grid, int64_t cell)
   return std::sin(12.9898 * i[0] + 78.233 * i[1] + 37.719 * i[2] + 1.0);
 }
 
-/** Cells in a box of n cells along each axis, by points in all of them, and coefficients of their faces and their surface. */
+/** Cells in a box of n cells along each axis, by points in all of them, and coefficients of their
+ *  faces and their surface. */
 struct Cells {
   Scene scene;
   MPMFlowLattice cells;
@@ -140,7 +142,8 @@ TEST(Rows, SpreadSolvesTheEquations)
       }
 }
 
-// one cycle and one product, on the finest level by lists and on the lattice; the box is closed, too
+// one cycle and one product, on the finest level by lists and on the lattice; the box is closed,
+// too
 TEST(Rows, PoissonIsThatOfTheLattice)
 {
   for (const int dim : {2, 3})

@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 240
 
-// Elastic solids in fix mpm/incompressible: waves of shear, a layer under a flow, disks that are carried along and that sink.
+// Elastic solids in fix mpm/incompressible: waves of shear, a layer under a flow, disks that are
+// carried along and that sink.
 
 #include "mpm_lammps.h"
 
@@ -27,8 +28,8 @@ std::string neohookean(double density, double G)
   return strprintf("mpm/material density %.17g neohookean %.17g 0.499\n", density, 2.998 * G);
 }
 
-/** A layer of solid of thickness a on a floor, fluid of the density 1 above it up to a lid at 1, and a force g cos(w t) along
- *  both: the amplitude of the velocity at y, and of its slope. */
+/** A layer of solid of thickness a on a floor, fluid of the density 1 above it up to a lid at 1,
+ *  and a force g cos(w t) along both: the amplitude of the velocity at y, and of its slope. */
 struct Layer {
   double a, density, viscosity, G, w;
 
@@ -55,7 +56,8 @@ struct Layer {
   }
 };
 
-/** Root mean square error of the velocities of points in the second period, over that of what they should be. */
+/** Root mean square error of the velocities of points in the second period, over that of what they
+ *  should be. */
 double error_of_layer(int n, const Layer &layer)
 {
   const double h = 1.0 / n, T = 2.0 * PI / layer.w,
@@ -139,7 +141,8 @@ class Squares {
   std::vector<std::array<tagint, 4>> list;
 };
 
-/** A soft disk of Zhao, Freund and Moser (J. Comput. Phys. 227 (2008) 3114) in a cavity with n cells, whose lid moves. */
+/** A soft disk of Zhao, Freund and Moser (J. Comput. Phys. 227 (2008) 3114) in a cavity with n
+ *  cells, whose lid moves. */
 std::string cavity(int n, double density = 1.0, const std::string &more = "")
 {
   return "atom_modify map array\n" + plane("lj", "f f", "0 1 0 1", 1, 0.02) +
@@ -194,7 +197,8 @@ SERIAL_TEST(FlowSolids, WavesOfShear)
   }
 }
 
-// a layer that is sheared by the fluid above it: of second order, wherever the interface is in a cell
+// a layer that is sheared by the fluid above it: of second order, wherever the interface is in a
+// cell
 SERIAL_TEST(FlowSolids, LayerUnderAFlow)
 {
   for (const double density : {1.0, 2.0})
@@ -216,8 +220,9 @@ SERIAL_TEST(FlowSolids, DiskInACavity)
   EXPECT_LT(measured("change of the area", std::fabs(squares.area() / before - 1.0)), 0.005);
 }
 
-// a heavy disk that sinks slowly in a channel, as a rigid one does (O.H. Faxen, Proc. R. Swed. Acad. Eng. Sci. 187 (1946) 1), with middles
-// at nodes of the lattice and in cells, and a shear modulus that is as good as infinite; by default as many steps as one likes do not brake it
+// a heavy disk that sinks slowly in a channel, as a rigid one does (O.H. Faxen, Proc. R. Swed.
+// Acad. Eng. Sci. 187 (1946) 1), with middles at nodes of the lattice and in cells, and a shear
+// modulus that is as good as infinite; by default as many steps as one likes do not brake it
 SERIAL_TEST(FlowSolids, HeavyDiskSinks)
 {
   const char *const aflip = "transfer aflip 1.0";
@@ -260,7 +265,8 @@ SERIAL_TEST(FlowSolids, HeavyDiskSinks)
   }
 }
 
-// a heavy strip that hangs in a fluid at rest keeps its length, as stress along its sides does not go: by L^2 (density difference) g/8G
+// a heavy strip that hangs in a fluid at rest keeps its length, as stress along its sides does not
+// go: by L^2 (density difference) g/8G
 SERIAL_TEST(FlowSolids, StripHangs)
 {
   for (const double at : {0.0, 0.5}) {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -14,8 +14,8 @@ namespace {
 
 enum { FILLED = 3, KINETIC = 5, ITERATIONS = 13 };
 
-/** Root mean square of the error of velocities between a cylinder of radius 0.2 that turns and one of radius 0.45, over that
- *  of the velocities (Couette), after four long steps. */
+/** Root mean square of the error of velocities between a cylinder of radius 0.2 that turns and one
+ *  of radius 0.45, over that of the velocities (Couette), after four long steps. */
 double error_of_cylinders(int n)
 {
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.01) +
@@ -39,8 +39,9 @@ double error_of_cylinders(int n)
   return measured(strprintf("%d cells: error", n), std::sqrt(sum / square));
 }
 
-/** Slow flow by a weight through a square array of cylinders, which fill 0.05: mean velocity over that of A.S. Sangani, A. Acrivos,
- *  Int. J. Multiphase Flow 8 (1982) 193, by whom the drag on one is 15.56 times viscosity and mean velocity. */
+/** Slow flow by a weight through a square array of cylinders, which fill 0.05: mean velocity over
+ *  that of A.S. Sangani, A. Acrivos, Int. J. Multiphase Flow 8 (1982) 193, by whom the drag on one
+ *  is 15.56 times viscosity and mean velocity. */
 double flow_through_cylinders(int n)
 {
   constexpr double filled = 0.05, speed = 0.01;
@@ -84,7 +85,8 @@ std::string fixes(double h)
 
 }    // namespace
 
-// plates with a slope of 1:2 in a periodic box: drag of walls that are oblique to the lattice, with 8 and 16 cells between them
+// plates with a slope of 1:2 in a periodic box: drag of walls that are oblique to the lattice, with
+// 8 and 16 cells between them
 SERIAL_TEST(Stick, InclinedPlates)
 {
   const double a = 0.193,
@@ -122,7 +124,8 @@ SERIAL_TEST(Stick, InclinedPlates)
   }
 }
 
-// a gap of 8 cells at 45 degrees, at four places in a cell: the drag is that of the place, and not of stairs
+// a gap of 8 cells at 45 degrees, at four places in a cell: the drag is that of the place, and not
+// of stairs
 SERIAL_TEST(Stick, PlatesAtFortyFiveDegrees)
 {
   constexpr double gap = 8.0, period = 16.0 * 0.70710678118654752;    // in cells
@@ -179,7 +182,8 @@ SERIAL_TEST(Stick, Pipe)
   }
 }
 
-// between balls, the inner of which turns: cells behind small openings do not take thousands of iterations
+// between balls, the inner of which turns: cells behind small openings do not take thousands of
+// iterations
 SERIAL_TEST(Stick, IterationsBetweenBalls)
 {
   Scene run(
@@ -275,7 +279,8 @@ SERIAL_TEST(Stick, BallThatTurns)
       square += u * u;
     }
   }
-  // without strain equations are exact; what is left is of points next to the wall, half of all with 4.5 cells in the radius
+  // without strain equations are exact; what is left is of points next to the wall, half of all
+  // with 4.5 cells in the radius
   EXPECT_LT(measured("error", std::sqrt(sum / square)), 0.05);
 }
 

@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 3 4
 
-// Implicit viscosity of fix mpm/incompressible: flows of honey, with steps far beyond the explicit limit.
+// Implicit viscosity of fix mpm/incompressible: flows of honey, with steps far beyond the explicit
+// limit.
 
 #include "mpm_lammps.h"
 
@@ -20,7 +21,8 @@ double explicit_dt(double h, double nu, int dim)
   return h * h / (2.0 * dim * nu);
 }
 
-/** Slow vortices of Taylor and Green on n x n cells: what is left of their amplitude at t, over exp(-2 nu k^2 t). */
+/** Slow vortices of Taylor and Green on n x n cells: what is left of their amplitude at t, over
+ *  exp(-2 nu k^2 t). */
 double vortices_left(int n, double t, int steps)
 {
   Scene run(
@@ -33,7 +35,8 @@ double vortices_left(int n, double t, int steps)
   return std::sqrt(4e12 * run.fix("w")->compute_vector(KINETIC)) / std::exp(-8.0 * PI * PI * t);
 }
 
-/** A sheet of length 4 and thickness 0.4 across its middle, that is stretched: u = U sin(pi x/4). */
+/** A sheet of length 4 and thickness 0.4 across its middle, that is stretched: u = U sin(pi
+ *  x/4). */
 std::string sheet(double h, double offset, double nu)
 {
   return plane("si", "p p", "-2.6 2.6 -0.6 0.6", 1, 0.02) +
@@ -58,8 +61,8 @@ std::array<double, 3> momenta(Scene &run)    // and the angular one about the or
 
 }    // namespace
 
-// H2: from rest to a time at which both are not steady, with an error of first order in the step, and to the steady flow in a few
-// steps of any length
+// H2: from rest to a time at which both are not steady, with an error of first order in the step,
+// and to the steady flow in a few steps of any length
 SERIAL_TEST(Plates, CouetteAndPoiseuille)
 {
   const auto at_half = [](Scene &scene) {
@@ -96,7 +99,8 @@ SERIAL_TEST(Plates, CouetteAndPoiseuille)
   }
 }
 
-// a hundred times the explicit limit: a factor of 0.67 in a step. Backward Euler has 1/(1 + 2 nu k^2 dt), and is of first order
+// a hundred times the explicit limit: a factor of 0.67 in a step. Backward Euler has 1/(1 + 2 nu
+// k^2 dt), and is of first order
 SERIAL_TEST(Vortices, DecayWithLongSteps)
 {
   const int n = 64;
@@ -113,12 +117,14 @@ SERIAL_TEST(Vortices, DecayWithLongSteps)
   EXPECT_LT(error[2], error[1]);
 }
 
-// Trouton: a sheet resists its stretching with 4 mu. Its velocity decays with 4 nu k^2, however long steps are against the
-// time h^2/nu and that of its thickness. Without the pressure that belongs to viscous stress it would be 2 mu
+// Trouton: a sheet resists its stretching with 4 mu. Its velocity decays with 4 nu k^2, however
+// long steps are against the time h^2/nu and that of its thickness. Without the pressure that
+// belongs to viscous stress it would be 2 mu
 SERIAL_TEST(Sheet, Trouton)
 {
   constexpr double t = 0.2, rate = 4.0 * (PI / 4) * (PI / 4);
-  // of the rate of decay; with so many steps, cells across half of the sheet, and its middle so far from a face
+  // of the rate of decay; with so many steps, cells across half of the sheet, and its middle so far
+  // from a face
   const auto error = [&](int steps, int n, double offset) {
     const double h = 0.2 / n;
     Scene run(sheet(h, offset * h, 1.0) + strprintf("timestep %.17g\nrun %d\n", t / steps, steps));
@@ -178,7 +184,8 @@ SERIAL_TEST(Tank, AtRest)
   }
 }
 
-// what turns as a rigid body does so without stress: with honey it turns as without viscosity, and momentum stays
+// what turns as a rigid body does so without stress: with honey it turns as without viscosity, and
+// momentum stays
 SERIAL_TEST(Blob, TurnsRigidly)
 {
   for (const int dim : {2, 3}) {
@@ -293,8 +300,9 @@ TEST(Block, RanksAndRestart)
   }
 }
 
-// a step whose viscosity does not converge, as iterations are few, is gone in parts. It has the mean velocity between plates that
-// backward Euler has with so many steps, whatever else flows there, and the weight on its walls; the same on all ranks
+// a step whose viscosity does not converge, as iterations are few, is gone in parts. It has the
+// mean velocity between plates that backward Euler has with so many steps, whatever else flows
+// there, and the weight on its walls; the same on all ranks
 TEST(Parts, EndsAsShorterSteps)
 {
   constexpr double dt = 0.005, g = 1e-4;
@@ -333,8 +341,8 @@ TEST(Parts, EndsAsShorterSteps)
   }
 }
 
-// honey that falls, with two solves in steps of other durations than those before, a region, and tension: halvings on all ranks,
-// and those of a restart file go on
+// honey that falls, with two solves in steps of other durations than those before, a region, and
+// tension: halvings on all ranks, and those of a restart file go on
 TEST(Parts, RanksAndRestart)
 {
   const auto scene = plane("si", "f f", "0 1 0 1", 1, 0.02) +

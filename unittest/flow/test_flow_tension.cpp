@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -14,7 +14,8 @@ namespace {
 
 enum { KINETIC = 5, FASTEST = 6, WALLS = 7 };
 
-/** A drop of radius, density, and tension 1 with n cells in its radius, about a place. r = c (1 + eps cos 2 theta) in 2d. */
+/** A drop of radius, density, and tension 1 with n cells in its radius, about a place. r = c (1 +
+ *  eps cos 2 theta) in 2d. */
 std::string drop(int dim, int n, double eps, double x, double y, double mu)
 {
   const double h = 1.0 / n, c = 1.0 / std::sqrt(1.0 + 0.5 * eps * eps);
@@ -117,7 +118,8 @@ SERIAL_TEST(Drop, Swings)
   EXPECT_LT(measured("spin", std::fabs(spin / inertia)), 1e-3);
 }
 
-// O5: a capillary wave of half its length between two walls, which it meets at a right angle, as deep as it is long
+// O5: a capillary wave of half its length between two walls, which it meets at a right angle, as
+// deep as it is long
 SERIAL_TEST(Wave, BetweenWalls)
 {
   const int n = 40;    // cells in a wave
@@ -168,7 +170,8 @@ SERIAL_TEST(Units, Pressure)
   }
 }
 
-// a drop that swings across faces of the box, on four ranks, balanced; and the same to the last bit from a restart file
+// a drop that swings across faces of the box, on four ranks, balanced; and the same to the last bit
+// from a restart file
 TEST(Drop, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {

@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Contact angles of fix mpm/incompressible: drops on floors without gravity, menisci between plates.
+// Contact angles of fix mpm/incompressible: drops on floors without gravity, menisci between
+// plates.
 
 #include "mpm_lammps.h"
 
@@ -14,8 +15,9 @@ namespace {
 
 enum { FASTEST = 6 };
 
-/** A drop of radius 1 on a floor, a segment of a disk, with n cells in the radius. It begins as this segment, or as one half of a disk. The
- *  floor is a wall of the box at y = 0, or a region whose surface has that height and slope angle. */
+/** A drop of radius 1 on a floor, a segment of a disk, with n cells in the radius. It begins as
+ *  this segment, or as one half of a disk. The floor is a wall of the box at y = 0, or a region
+ *  whose surface has that height and slope angle. */
 struct Sessile {
   double angle, n;
   bool is_segment;
@@ -81,8 +83,9 @@ struct Sessile {
   }
 };
 
-/** Height over the middle at so many places from the middle to the wall, of water between walls with the distance W and the contact angle; density,
- *  gravity, and tension are one. Integrates dy/dx = tan phi, d sin(phi)/dx = c + y. */
+/** Height over the middle at so many places from the middle to the wall, of water between walls
+ *  with the distance W and the contact angle; density, gravity, and tension are one. Integrates
+ *  dy/dx = tan phi, d sin(phi)/dx = c + y. */
 std::vector<double> meniscus(double W, double angle, int places)
 {
   constexpr int STEPS = 200;
@@ -106,7 +109,8 @@ std::vector<double> meniscus(double W, double angle, int places)
 
 }    // namespace
 
-// drops come to rest as segments of disks that meet the floor at the angle, and with the pressure of their radius
+// drops come to rest as segments of disks that meet the floor at the angle, and with the pressure
+// of their radius
 SERIAL_TEST(Sessile, OnWallOfTheBox)
 {
   for (const double angle : {60.0, 90.0, 120.0}) {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -140,7 +140,8 @@ void measure(const std::vector<double> &t, const std::vector<double> &m, double 
       std::log((peaks[0] + peaks[1]) / (peaks[last - 1] + peaks[last])) / (times[last] - times[1]);
 }
 
-/** Largest error of the velocity along x in the middle of a cavity of n cells at the heights y: that of a line through the points next to each. */
+/** Largest error of the velocity along x in the middle of a cavity of n cells at the heights y:
+ *  that of a line through the points next to each. */
 double error_of_profile(Scene &run, int n, const std::vector<double> &y,
                         const std::vector<double> &u)
 {
@@ -163,8 +164,8 @@ double error_of_profile(Scene &run, int n, const std::vector<double> &y,
 
 }    // namespace
 
-// O1 of Taylor and Green, Re = 100, 64 x 64, at t = 1: errors of velocity and pressure, divergence, and points in cells; at rest and in a stream,
-// in the same steps
+// O1 of Taylor and Green, Re = 100, 64 x 64, at t = 1: errors of velocity and pressure, divergence,
+// and points in cells; at rest and in a stream, in the same steps
 SERIAL_TEST(Vortices, DecayAsTheyShould)
 {
   LONG_CASE();
@@ -203,7 +204,8 @@ SERIAL_TEST(Vortices, DecayAsTheyShould)
   }
 }
 
-// by default vortices lose nothing by the number of steps, at rest and in a stream; with apic 16 cells lose 12 and 39 % and 32 cells 2 and 5 % in these
+// by default vortices lose nothing by the number of steps, at rest and in a stream; with apic 16
+// cells lose 12 and 39 % and 32 cells 2 and 5 % in these
 SERIAL_TEST(Vortices, AnyNumberOfSteps)
 {
   for (const int n : first_of(1, {16, 32}))
@@ -255,8 +257,8 @@ SERIAL_TEST(Vortices, ReflectKeepsEnergy)
   EXPECT_LT(lost[1], 0.5 * lost[0]);
 }
 
-// the stress of points has that of viscosity, whatever they keep of velocities: between plates that move it is the same everywhere,
-// in 2d and 3d, and does not touch the pressure
+// the stress of points has that of viscosity, whatever they keep of velocities: between plates that
+// move it is the same everywhere, in 2d and 3d, and does not touch the pressure
 SERIAL_TEST(Plates, StressOfPoints)
 {
   for (const char *const options :
@@ -310,8 +312,10 @@ SERIAL_TEST(Plates, CouetteAndPoiseuille)
   EXPECT_NEAR(measured("Poiseuille", at_half(poiseuille)), 0.615353, 0.004 * 0.615353);
 }
 
-// a film on an inclined floor with explicit viscosity: the layer of points at its surface, whose outer faces viscosity does not act on, flows
-// with the water below it and does not fall freely, wherever the surface is in a cell (but exactly in its middle, where rounding decides which cells are wet)
+// a film on an inclined floor with explicit viscosity: the layer of points at its surface, whose
+// outer faces viscosity does not act on, flows with the water below it and does not fall freely,
+// wherever the surface is in a cell (but exactly in its middle, where rounding decides which cells
+// are wet)
 SERIAL_TEST(Film, SurfaceAnywhere)
 {
   for (const int dim : first_of(1, {2, 3}))
@@ -336,7 +340,8 @@ SERIAL_TEST(Film, SurfaceAnywhere)
     }
 }
 
-// where the surface goes from one layer of cells to the next, up and down from column to column: to first order in the spacing the film of the mean depth
+// where the surface goes from one layer of cells to the next, up and down from column to column: to
+// first order in the spacing the film of the mean depth
 SERIAL_TEST(Film, SurfaceOfSteps)
 {
   for (const int n : {10, 20}) {
@@ -362,9 +367,11 @@ SERIAL_TEST(Film, SurfaceOfSteps)
   }
 }
 
-/** Mean velocity of points in a square duct of the width 1 with n x n cells, 2 x 2 points in each, after so many steps from rest under the force 1 with the viscosity
- *  1: velocities in the middle of cells obey the difference equation of second order in space and first order in time, with walls half a cell away from
- *  the first ones, and modes are sines. Points have their linear interpolation. */
+/** Mean velocity of points in a square duct of the width 1 with n x n cells, 2 x 2 points in each,
+ *  after so many steps from rest under the force 1 with the viscosity 1: velocities in the middle
+ *  of cells obey the difference equation of second order in space and first order in time, with
+ *  walls half a cell away from the first ones, and modes are sines. Points have their linear
+ *  interpolation. */
 double duct_of_differences(int n, double dt, int nsteps)
 {
   double sum = 0.0, factor[2], rate[2];
@@ -381,8 +388,9 @@ double duct_of_differences(int n, double dt, int nsteps)
   return sum;
 }
 
-// Flow through a square duct under a force, mean velocity 0.0351443 g L^2/nu (J. Boussinesq, 1868). It varies along both axes across it; what the lattice and
-// the points tell each other in each step must not change it, however short the steps are: it is that of differences
+// Flow through a square duct under a force, mean velocity 0.0351443 g L^2/nu (J. Boussinesq, 1868).
+// It varies along both axes across it; what the lattice and the points tell each other in each step
+// must not change it, however short the steps are: it is that of differences
 SERIAL_TEST(Duct, IsThatOfDifferences)
 {
   const int n = 8;
@@ -411,8 +419,9 @@ SERIAL_TEST(Duct, IsThatOfDifferences)
   }
 }
 
-// O2: the cavity at Re = 100 with 64 x 64 cells, of which 0.008 is asked from t = 30 on; at 12 it is steady but for 0.001. Steps are nearly as
-// long as explicit viscosity is stable, which is twice what fix mpm/dt has
+// O2: the cavity at Re = 100 with 64 x 64 cells, of which 0.008 is asked from t = 30 on; at 12 it
+// is steady but for 0.001. Steps are nearly as long as explicit viscosity is stable, which is twice
+// what fix mpm/dt has
 SERIAL_TEST(Cavity, Profile)
 {
   LONG_CASE();
@@ -429,8 +438,9 @@ SERIAL_TEST(Cavity, Profile)
   EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);    // no voids
 }
 
-// O2 at Re = 400 with 32 cells, in long steps: sharp paths and reflect are as good as central differences of second order on the same lattice, whose
-// error is 0.034 (with 64 cells 0.0092, and 0.0101 with sharp paths)
+// O2 at Re = 400 with 32 cells, in long steps: sharp paths and reflect are as good as central
+// differences of second order on the same lattice, whose error is 0.034 (with 64 cells 0.0092, and
+// 0.0101 with sharp paths)
 SERIAL_TEST(Cavity, SharpPaths)
 {
   const int n = 32;
@@ -465,7 +475,8 @@ TEST(Cavity, SharpPathsRanksAndRestart)
   EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
 }
 
-// at rest below a lid: what is next to this is as fast after the first step, but nothing is faster, also with more than a cell per step
+// at rest below a lid: what is next to this is as fast after the first step, but nothing is faster,
+// also with more than a cell per step
 SERIAL_TEST(Cavity, Begins)
 {
   for (const char *const step : {"fix dt all mpm/dt 0.8 every 1\n", "timestep 0.078\n"}) {
@@ -546,7 +557,8 @@ SERIAL_TEST(Tank, PoolsAndFullOnes)
   EXPECT_NEAR(up / 9810, 1.0, 1e-8);
 }
 
-// O7: iterations to 1e-8, with surfaces that are inclined, and with drops; on ranks, and with a closed pool
+// O7: iterations to 1e-8, with surfaces that are inclined, and with drops; on ranks, and with a
+// closed pool
 SERIAL_TEST(Solver, Iterations)
 {
   const int most[2][3] = {{21, 27, 33}, {42, 58, 80}};    // asked: 1.5 times those of a transform
@@ -627,7 +639,8 @@ SERIAL_TEST(Block, FirstPressure)
   EXPECT_GE(measured("order", mean_order / orders), 1.8);
 }
 
-// O5: a standing wave with viscosity. Asked is a frequency to 1 %, which points as dots have, too, with 0.8 %
+// O5: a standing wave with viscosity. Asked is a frequency to 1 %, which points as dots have, too,
+// with 0.8 %
 SERIAL_TEST(Wave, FrequencyAndDecay)
 {
   std::vector<double> t, m;
@@ -638,7 +651,8 @@ SERIAL_TEST(Wave, FrequencyAndDecay)
   EXPECT_NEAR(measured("decay over theory", decay / 0.1797877), 1.0, 0.05);
 }
 
-// without viscosity a wave neither grows nor decays, whatever is reflected: the numerical viscosity, by 2 nu k^2
+// without viscosity a wave neither grows nor decays, whatever is reflected: the numerical
+// viscosity, by 2 nu k^2
 SERIAL_TEST(Wave, KeepsItsHeight)
 {
   for (const char *options : {"", "reflect 0.8", "transfer flip 0.95"}) {
@@ -652,7 +666,8 @@ SERIAL_TEST(Wave, KeepsItsHeight)
   }
 }
 
-// nothing acts on a drop in flight, whose spin stays; momentum is kept to what the pressure at faces in the surface is off by
+// nothing acts on a drop in flight, whose spin stays; momentum is kept to what the pressure at
+// faces in the surface is off by
 SERIAL_TEST(Drop, InFlight)
 {
   for (const int dim : {2, 3})
@@ -689,7 +704,8 @@ SERIAL_TEST(Drop, InFlight)
     }
 }
 
-// two points that fly and spin by more than two in a step: what they tell faces far from them must not end the run, nor push them
+// two points that fly and spin by more than two in a step: what they tell faces far from them must
+// not end the run, nor push them
 SERIAL_TEST(Drop, TwoPointsSpin)
 {
   for (const char *options : {"", "reflect 0.5", "spread 0"})
@@ -712,7 +728,8 @@ SERIAL_TEST(Drop, TwoPointsSpin)
     }
 }
 
-// what spreading adds to the energy of points, by a run without it: in the first step nothing else differs
+// what spreading adds to the energy of points, by a run without it: in the first step nothing else
+// differs
 SERIAL_TEST(Spread, IsInTheEnergy)
 {
   for (const char *units : {"si", "metal"})
@@ -850,7 +867,8 @@ SERIAL_TEST(Incompressible, BadInput)
               warnings);
 }
 
-// what hits a floor flat is several times faster after that step, which fix mpm/dt cannot know before
+// what hits a floor flat is several times faster after that step, which fix mpm/dt cannot know
+// before
 SERIAL_TEST(Impact, TellsFraction)
 {
   const auto scene = plane("si", "f f", "0 3 0 1.5", 1, 0.02) +
@@ -862,7 +880,8 @@ SERIAL_TEST(Impact, TellsFraction)
   EXPECT_GT(run.fix("w")->compute_vector(FASTEST), 1.5);
 }
 
-// the velocity of what falls is that of the elapsed time, however long its steps were: of fix mpm/dt, and of runs with others
+// the velocity of what falls is that of the elapsed time, however long its steps were: of fix
+// mpm/dt, and of runs with others
 SERIAL_TEST(Drop, FallsFreely)
 {
   for (const char *more : {"", "reflect 0.8"}) {
@@ -899,8 +918,9 @@ SERIAL_TEST(Tank, TimeStepThatChanges)
   }
 }
 
-// before the first step there are no forces: the first step of a fluid at rest is that of its weight, and runs that go on
-// from restart files, also those that are written on the way, have the steps of the one without a break
+// before the first step there are no forces: the first step of a fluid at rest is that of its
+// weight, and runs that go on from restart files, also those that are written on the way, have the
+// steps of the one without a break
 TEST(Tank, FirstTimeStep)
 {
   for (const char *units : {"si", "metal"}) {
@@ -934,8 +954,9 @@ TEST(Tank, FirstTimeStep)
   }
 }
 
-// a column that collapses, hits a wall, and splashes: pressures of all points are those of water, also next to cells that are wet as they
-// are surrounded by others, and that points fill by less than one half
+// a column that collapses, hits a wall, and splashes: pressures of all points are those of water,
+// also next to cells that are wet as they are surrounded by others, and that points fill by less
+// than one half
 SERIAL_TEST(Splash, PressuresOfPoints)
 {
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.03) +

@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Fix mpm/column, and the free field that fix mpm/dashpot takes from it: level ground that is shaken moves as in one dimension
-// everywhere, also next to its sides.
+// Fix mpm/column, and the free field that fix mpm/dashpot takes from it: level ground that is
+// shaken moves as in one dimension everywhere, also next to its sides.
 
 #include "mpm_lammps.h"
 
@@ -19,8 +19,8 @@ namespace {
 const std::string GROUND = "variable E equal 2000*200^2*2.5\n";
 const std::string SIDE = " 346.41 200 ";
 
-/** Level ground 20 m high from -10 to 10 m, a column of the given width (m) at 14 m, and waves of shear or pressure
- *  at their base. */
+/** Level ground 20 m high from -10 to 10 m, a column of the given width (m) at 14 m, and waves of
+ *  shear or pressure at their base. */
 std::string site(const std::string &options, bool shear, double width = 2.0)
 {
   return plane("si", "f f", "-20 20 0 24", 2, 0.3) + "group soil empty\ngroup column empty\n" +
@@ -61,8 +61,8 @@ double velocity(Scene &run, int axis, double low, double high, double above)
   return sum / n;
 }
 
-/** Largest difference between ground and column during a run, at the surface: next to the sides and in the middle, over the largest
- *  velocity of the column. */
+/** Largest difference between ground and column during a run, at the surface: next to the sides and
+ *  in the middle, over the largest velocity of the column. */
 double difference(Scene &run, int axis, int steps, double top = 19.0)
 {
   double most = 0.0, off = 0.0;
@@ -78,8 +78,8 @@ double difference(Scene &run, int axis, int steps, double top = 19.0)
 
 }    // namespace
 
-// Level ground in two layers moves like its column to 1 %, next to its sides and in the middle; with dashpots of a far side at rest, or
-// walls, it does not
+// Level ground in two layers moves like its column to 1 %, next to its sides and in the middle;
+// with dashpots of a far side at rest, or walls, it does not
 struct Sides {
   const char *options;
   bool shear;
@@ -107,7 +107,8 @@ SERIAL_TEST(Level, NeedsTheFreeField)
   }
 }
 
-// The column is a strip of ground that is periodic along x, whatever its width is, and which laws it has; walls see single lines of nodes
+// The column is a strip of ground that is periodic along x, whatever its width is, and which laws
+// it has; walls see single lines of nodes
 SERIAL_TEST(Column, IsAStripWithoutEnd)
 {
   const std::string free = "velocity all ramp vx 0 1 y 0 20\n"
@@ -170,7 +171,8 @@ SERIAL_TEST(Level, AmplifiesTheRock)
   for (const double v : most) EXPECT_NEAR(measured("top over exact", v / exact), 1.0, 0.02);
 }
 
-// Ground that yields, under its weight: the stress of the column comes to the sides, whatever its material does
+// Ground that yields, under its weight: the stress of the column comes to the sides, whatever its
+// material does
 SERIAL_TEST(Level, YieldsLikeItsColumn)
 {
   Scene run(replaced(site("transfer aflip 1.0", true), "0.01*", "0.5*") +
@@ -195,7 +197,8 @@ SERIAL_TEST(Level, OtherPointsInTheColumn)
   EXPECT_LT(measured("ground against column", difference(run, 0, 1000)), 0.01);
 }
 
-// Forces of the free field hold the ground where the column is sheared: those of both sides cancel but for the moment; the ledger closes
+// Forces of the free field hold the ground where the column is sheared: those of both sides cancel
+// but for the moment; the ledger closes
 SERIAL_TEST(Level, ForcesAndWork)
 {
   Scene run(site("transfer aflip 1.0 gain error 0.05", true) + LAYERS + FREE +
@@ -212,7 +215,8 @@ SERIAL_TEST(Level, ForcesAndWork)
   run.lmp->modify->get_compute_by_id("e")->compute_scalar();
   const double *const e = run.compute_vector();
   EXPECT_NEAR(measured("residual", e[10] / (e[0] + e[1])), 0.0, 1e-11);
-  // the energy watch knows the work of the stress at the sides, too: what it tells is what the ledger has in transfer and integration
+  // the energy watch knows the work of the stress at the sides, too: what it tells is what the
+  // ledger has in transfer and integration
   const double before = e[8] + e[9];
   const ScratchFile file("log");
   EXPECT_EQ(run.error("log " + file.name + "\nrun 1200\nlog none\n"), "");

@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 300
 
-// Fix mpm/dashpot: waves leave bodies through dashpots and come in through them (benchmarks S3 and S4).
+// Fix mpm/dashpot: waves leave bodies through dashpots and come in through them (benchmarks S3 and
+// S4).
 
 #include "mpm_lammps.h"
 
@@ -31,8 +32,8 @@ std::string strip(const std::string &options, double offset, int length, int hei
                 offset + length);
 }
 
-/** Velocity and stress of the wave of direction a along y or x, sum over points of a section of the strip: the part that
- *  goes to the right, and to the left. */
+/** Velocity and stress of the wave of direction a along y or x, sum over points of a section of the
+ *  strip: the part that goes to the right, and to the left. */
 std::array<double, 2> waves(Scene &run, double low, double high, bool shear)
 {
   double right = 0.0, left = 0.0, n = 0.0;
@@ -50,8 +51,8 @@ std::array<double, 2> waves(Scene &run, double low, double high, bool shear)
 
 }    // namespace
 
-// A pulse of waves of 20 cells along the normal of the face, wherever that is in a cell: reflection below 0.01, and what
-// leaves is what the ledger has lost, to 1 %
+// A pulse of waves of 20 cells along the normal of the face, wherever that is in a cell: reflection
+// below 0.01, and what leaves is what the ledger has lost, to 1 %
 struct Pulse {
   const char *options;
   double offset;
@@ -110,7 +111,8 @@ PARAMETER_TEST(Normal, Leaves, Pulse,
   EXPECT_NEAR(e[10] / there, 0.0, 1e-11);
 }
 
-// Waves that come at an angle are reflected as pressure and shear waves, with the amplitudes of the theory to 0.02 (benchmark S3)
+// Waves that come at an angle are reflected as pressure and shear waves, with the amplitudes of the
+// theory to 0.02 (benchmark S3)
 struct Incoming {
   bool shear;
   int angle;
@@ -168,8 +170,8 @@ PARAMETER_TEST(Oblique, Reflects, Incoming,
   const double kx = k * d[0], in = amplitude(kx, a[0], a[1]);
   const int steps[2] = {(int) (w.travel[0] / (c * d[0]) / 0.3),
                         (int) (w.travel[1] / (c * d[0]) / 0.3)};
-  // an echo of the other kind has as many waves in another length, as it goes along x at another speed. Shear waves of a lattice
-  // are up to 6 % shorter
+  // an echo of the other kind has as many waves in another length, as it goes along x at another
+  // speed. Shear waves of a lattice are up to 6 % shorter
   double s = 0.0;
   run.commands(strprintf("run %d\n", steps[0]));
   for (double K = 0.99 * ks; K < 1.06 * ks; K += 0.005 * ks)
@@ -180,7 +182,8 @@ PARAMETER_TEST(Oblique, Reflects, Incoming,
   const double p =
       amplitude(-kp, -kp / omega, ky / omega) / in * (w.shear ? kx / kp * CS * CS : 1.0);
   EXPECT_NEAR(measured("pressure wave", p), w.p, 0.02);
-  // of pressure waves at 80 degrees, shear waves are 9 cells long, and their packet has spread before pressure waves have turned round
+  // of pressure waves at 80 degrees, shear waves are 9 cells long, and their packet has spread
+  // before pressure waves have turned round
   if (w.s > 0.0) EXPECT_NEAR(measured("shear wave", s), w.s, 0.02);
 }
 
@@ -206,8 +209,9 @@ PARAMETER_TEST(Rock, ShakesTheLayer, double, Values(1.0, 1.5707963267948966))
   EXPECT_NEAR(measured("top over rock, over exact", most / 2e-4 / exact), 1.0, 0.02);
 }
 
-// The same at its resonance with the base in a plane of nodes, where points hardly reach the nodes beyond it. The rock has the impedance alone:
-// how this is made of density and speed does not matter
+// The same at its resonance with the base in a plane of nodes, where points hardly reach the nodes
+// beyond it. The rock has the impedance alone: how this is made of density and speed does not
+// matter
 SERIAL_TEST(Rock, ShakesTheLayerFromAPlaneOfNodes)
 {
   const double z = 0.25, omega = 0.5 * PI * CS / 20.0;
@@ -230,7 +234,8 @@ SERIAL_TEST(Rock, ShakesTheLayerFromAPlaneOfNodes)
   EXPECT_NEAR(most[1] / most[0], 1.0, 1e-6);
 }
 
-// A rigid base whose velocity is given, and the frame that moves with it, in which its acceleration is a weight, are the same
+// A rigid base whose velocity is given, and the frame that moves with it, in which its acceleration
+// is a weight, are the same
 SERIAL_TEST(RigidBase, IsAWeightInItsFrame)
 {
   const double T = 30.0, V = 1e-4;
@@ -260,7 +265,8 @@ SERIAL_TEST(RigidBase, IsAWeightInItsFrame)
   EXPECT_LT(measured("difference of the two", off / most), 0.01);
 }
 
-// Ground that has its stress stands on the dashpots, and does not drift; with springs even from no stress at all
+// Ground that has its stress stands on the dashpots, and does not drift; with springs even from no
+// stress at all
 SERIAL_TEST(Static, Stays)
 {
   for (const char *options :
@@ -285,7 +291,8 @@ SERIAL_TEST(Static, Stays)
   }
 }
 
-// A load that comes later sinks into dashpots with sigma/(rho c) and comes to rest on springs, at sigma tau/(rho c)
+// A load that comes later sinks into dashpots with sigma/(rho c) and comes to rest on springs, at
+// sigma tau/(rho c)
 SERIAL_TEST(Spring, BearsALoad)
 {
   for (const double tau : {0.0, 100.0}) {
@@ -306,7 +313,8 @@ SERIAL_TEST(Spring, BearsALoad)
   }
 }
 
-// A block of ground that is cut out of more of it: base and sides hold it together, and edges do not count twice
+// A block of ground that is cut out of more of it: base and sides hold it together, and edges do
+// not count twice
 SERIAL_TEST(Static, CutOnThreeSides)
 {
   Scene run(
@@ -372,7 +380,8 @@ TEST(Dashpot, RanksAndRestart)
   }
 }
 
-// numbers of the input are those of the unit style: a body that moves as a whole feels rho c v on the face
+// numbers of the input are those of the unit style: a body that moves as a whole feels rho c v on
+// the face
 SERIAL_TEST(Units, OfForce)
 {
   for (const char *units : {"si", "metal", "real", "lj"}) {
@@ -390,7 +399,8 @@ SERIAL_TEST(Units, OfForce)
   }
 }
 
-// a face at 45 degrees to the lattice, of a body that moves as a whole: rho cp along its normal, rho cs along it
+// a face at 45 degrees to the lattice, of a body that moves as a whole: rho cp along its normal,
+// rho cs along it
 SERIAL_TEST(Inclined, ForceOnTheFace)
 {
   Scene run(plane("lj", "f f", "0 24 0 24", 1, 0.3) + "fix grid all mpm 1.0\n" +
@@ -406,8 +416,9 @@ SERIAL_TEST(Inclined, ForceOnTheFace)
   EXPECT_NEAR((f[1] - f[0]) / (-2.0 * CS * scale * sqrt(2.0)), 1.0, 1e-3);
 }
 
-// the side of a tube around an axis of symmetry has the area of a cylinder, not that of the rings below it: force on one that moves
-// with the velocity 1, along the axis and away from it, in a step that is too short to slow it down
+// the side of a tube around an axis of symmetry has the area of a cylinder, not that of the rings
+// below it: force on one that moves with the velocity 1, along the axis and away from it, in a step
+// that is too short to slow it down
 SERIAL_TEST(Ring, ForceOnTheSide)
 {
   for (const bool along : {true, false}) {
@@ -423,7 +434,8 @@ SERIAL_TEST(Ring, ForceOnTheSide)
   }
 }
 
-// dashpots of two fixes on one face add up, which is told; not those of other faces, also at a corner, or of other points
+// dashpots of two fixes on one face add up, which is told; not those of other faces, also at a
+// corner, or of other points
 TEST(Dashpot, WarnsOfTwoOnOneFace)
 {
   const auto warnings = [](const std::string &second, int height = 4, int low = 2) {
@@ -447,7 +459,8 @@ TEST(Dashpot, WarnsOfTwoOnOneFace)
   EXPECT_EQ(warnings("fix two all mpm/dashpot region top 1 0.5").size(), 0u);
 }
 
-// Velocities that are mapped back and moving least squares: 14 % of the amplitude of a layer on rock was missing, and 19 % with half the spacing
+// Velocities that are mapped back and moving least squares: 14 % of the amplitude of a layer on
+// rock was missing, and 19 % with half the spacing
 SERIAL_TEST(Dashpot, WarnsOfSchemesThatTakeWaves)
 {
   const auto warnings = [](const std::string &options) {

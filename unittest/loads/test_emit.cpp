@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input ranks
 // mpi: 1 4
@@ -40,7 +40,8 @@ fix dt all mpm/dt 0.4
 )";
 }
 
-/** The mean of what a formula gives in each of so many steps, which start at a multiple of their number. */
+/** The mean of what a formula gives in each of so many steps, which start at a multiple of their
+ *  number. */
 double mean_of(Scene &run, const std::string &formula, int steps)
 {
   run.commands("variable f equal " + formula + "\nfix mean all ave/time 1 " +
@@ -69,7 +70,8 @@ void spacings(Scene &run, double spacing, double &least, double &most)
 
 }    // namespace
 
-// benchmark S5: the mass is that of the flow, and points are on their lattice, at any velocity and offset of the mouth
+// benchmark S5: the mass is that of the flow, and points are on their lattice, at any velocity and
+// offset of the mouth
 struct Inflow {
   const char *options;
   double courant, offset;    // U dt/h, in cells
@@ -128,7 +130,8 @@ PARAMETER_TEST(Plug, IsExact, Inflow,
   EXPECT_LT(std::fabs(e[10]), 1e-9 * e[12]);                      // the residual
 }
 
-// the section, and not the lattice that fits into it, has the mass: a width of 5.3 points, and a speed that varies and stops
+// the section, and not the lattice that fits into it, has the mass: a width of 5.3 points, and a
+// speed that varies and stops
 TEST(Plug, PulsesAndOddWidth)
 {
   const std::string scene = plane("si", "f f", "0 2 0 0.5", 1, 0.01) +
@@ -266,7 +269,8 @@ fix g all gravity 3 vector 0 -1 0
 timestep 0.001
 run 5
 )");
-  // fix gravity has the unit of force over mass; below the end of the mouth there is a node that is free to fall
+  // fix gravity has the unit of force over mass; below the end of the mouth there is a node that is
+  // free to fall
   const double weight = 3000.0 * 3.0;
   EXPECT_NEAR(run.fix("in")->compute_vector(10) / weight, 1.0, 1e-3);
   EXPECT_NEAR(run.fix("in")->compute_vector(9), 0.0, 1e-9 * weight);
@@ -285,7 +289,8 @@ fix walls all mpm/boundary xlo xhi ylo yhi slip
 timestep 1.3e-5
 run 39
 )");
-  // in this step the third layer has come; all of these are at least a cell and a half from the end of the mouth
+  // in this step the third layer has come; all of these are at least a cell and a half from the end
+  // of the mouth
   const double pressure = 1e5;
   int n = 0;
   for (const auto &s : run.gather())
@@ -296,7 +301,8 @@ run 39
   EXPECT_EQ(n, 100);
 }
 
-// force on a wall and on a plate that a jet meets at an angle of 60 degrees (benchmark S5), flow rates, and balance of mass
+// force on a wall and on a plate that a jet meets at an angle of 60 degrees (benchmark S5), flow
+// rates, and balance of mass
 SERIAL_TEST(Jet, OnAWall)
 {
   Scene run(jet("region mouth block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.0125));
@@ -358,8 +364,9 @@ SERIAL_TEST(Jet, DensityAtTheMouth)
   EXPECT_NEAR(measured("mass around the end of the mouth", mass / (RHO * 0.12 * B)), 1.0, 0.06);
 }
 
-// A mouth that is shaken with what it holds works with the mean of its velocities before and after each step: that is what its material gets as
-// kinetic energy, with any time step and transfer. All nodes that its points see are held: its end is just beyond a plane of nodes
+// A mouth that is shaken with what it holds works with the mean of its velocities before and after
+// each step: that is what its material gets as kinetic energy, with any time step and transfer. All
+// nodes that its points see are held: its end is just beyond a plane of nodes
 TEST(Plug, WorkOfAShakenMouth)
 {
   for (const char *options : {"", " transfer flip 0.9", " transfer apic scheme musl"})
@@ -388,7 +395,8 @@ TEST(Plug, WorkOfAShakenMouth)
     }
 }
 
-// flow through a channel: a steady state with the same points on any number of processes, and after a restart
+// flow through a channel: a steady state with the same points on any number of processes, and after
+// a restart
 TEST(Channel, RanksAndRestart)
 {
   const std::string fixes = R"(
@@ -425,7 +433,8 @@ thermo_style custom step c_e
   }
 }
 
-// no point gets the ID of one that was removed, by any mouth, on any number of ranks, nor after a restart
+// no point gets the ID of one that was removed, by any mouth, on any number of ranks, nor after a
+// restart
 TEST(Channel, IDsComeOnce)
 {
   const std::string fixes = R"(
@@ -495,8 +504,8 @@ run 3000
   EXPECT_NEAR((double) run.gather().size(), n, 30.0);
 }
 
-// points that come and go do not look like others that were added or removed, with which the watch of energies begins anew: what
-// transfers take of a jet at a wall is what the ledger has
+// points that come and go do not look like others that were added or removed, with which the watch
+// of energies begins anew: what transfers take of a jet at a wall is what the ledger has
 SERIAL_TEST(Channel, WatchKnows)
 {
   const auto text = lines_that_say(
@@ -544,8 +553,8 @@ run 500
   }
 }
 
-// a bar with heat sources slides into a sink: the heat of the points that are still there, of which the material tells only what heat makes what
-// temperature, and of those that went is what came
+// a bar with heat sources slides into a sink: the heat of the points that are still there, of which
+// the material tells only what heat makes what temperature, and of those that went is what came
 PARAMETER_TEST(Sink, HeatIsInBalance, const char *,
                Values("", "melt 310 2e4", "melt 310 2e4 over 5",
                       "melt 310 2e4 vary CP table 300 1.0 700 6.0"))
@@ -581,7 +590,8 @@ PARAMETER_TEST(Sink, HeatIsInBalance, const char *,
               1.0, 1e-9);
 }
 
-// a bar whose points differ in specific heat and first temperature is warmed and goes as a whole: what went with it is what came
+// a bar whose points differ in specific heat and first temperature is warmed and goes as a whole:
+// what went with it is what came
 TEST(Sink, HeatOfPointsThatDiffer)
 {
   Scene run(plane("si", "p p", "0 2 0 0.2", 1, 0.025) +
@@ -597,7 +607,8 @@ TEST(Sink, HeatOfPointsThatDiffer)
   EXPECT_NEAR(measured("heat that went over what came", gone / came), 1.0, 1e-9);
 }
 
-// a column of an incompressible fluid runs out of the box: what is there and what has gone are all of it, on any number of processes
+// a column of an incompressible fluid runs out of the box: what is there and what has gone are all
+// of it, on any number of processes
 TEST(Channel, DrainOfAnIncompressibleFluid)
 {
   const std::string scene = plane("si", "f f", "0 2 0 1", 1, 0.025) + R"(
@@ -621,8 +632,8 @@ fix dt all mpm/dt 0.5 max 0.01
   EXPECT_EQ((double) runs.parallel.lmp->atom->natoms, (double) rest.size());
 }
 
-// water that has left a tank through a hole in its floor has the speed of the height that it has lost, but for what transfers
-// take where the flow turns round the edges of the hole (benchmark S5)
+// water that has left a tank through a hole in its floor has the speed of the height that it has
+// lost, but for what transfers take where the flow turns round the edges of the hole (benchmark S5)
 SERIAL_TEST(Drain, SpeedOfTheHeight)
 {
   Scene run(plane("si", "f f", "0 0.8 -0.3 0.7", 1, 0.01) + R"(

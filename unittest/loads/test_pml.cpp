@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -38,8 +38,9 @@ double kinetic(Scene &run)
   return over_ranks(sum);
 }
 
-// Packets of plane waves that come at an angle to layers or dashpots at the end of a strip, against a strip that goes on: amplitudes of the
-// echoes, as pressure and shear waves, and their share of the energy
+// Packets of plane waves that come at an angle to layers or dashpots at the end of a strip, against
+// a strip that goes on: amplitudes of the echoes, as pressure and shear waves, and their share of
+// the energy
 struct Incoming {
   bool shear;
   int angle;
@@ -94,7 +95,8 @@ std::array<Velocities, 2> send(const Incoming &w, int length, const std::string 
   return found;
 }
 
-/** What comes back from the given end with some cells behind the strip, of what goes on without an end. */
+/** What comes back from the given end with some cells behind the strip, of what goes on without an
+ *  end. */
 Echo echo(const std::string &name, const Incoming &w, const std::array<Velocities, 2> &without,
           int cells, const std::string &far)
 {
@@ -105,8 +107,8 @@ Echo echo(const std::string &name, const Incoming &w, const std::array<Velocitie
   const double kp = has_p ? sqrt(omega * omega - ky * ky) : 0.0,
                ks = sqrt(omega * omega / (CS * CS) - ky * ky), kx = k * cos(theta);
   const auto with = send(w, w.length + cells, far);
-  // of waves exp(i (kx x + ky y)) with velocities along the given direction. The packet of the strip that goes on has lost as much on
-  // its way
+  // of waves exp(i (kx x + ky y)) with velocities along the given direction. The packet of the
+  // strip that goes on has lost as much on its way
   const auto sum_of = [&](const Velocities &velocities, int x_hi, double k, double ex, double ey) {
     std::complex<double> sum = 0.0;
     for (const auto &[place, v] : velocities)
@@ -123,8 +125,8 @@ Echo echo(const std::string &name, const Incoming &w, const std::array<Velocitie
                         w.shear ? d[0] : d[1]));
   };
   Echo e = {0.0, 0.0, 0.0};
-  // an echo of the other kind has as many waves in another length, as it goes along x at another speed. Shear waves of a lattice
-  // are up to 6 % shorter
+  // an echo of the other kind has as many waves in another length, as it goes along x at another
+  // speed. Shear waves of a lattice are up to 6 % shorter
   for (double K = 0.99 * ks; K < 1.06 * ks; K += 0.005 * ks)
     e.s = std::max(e.s,
                    amplitude(0, -K, ky * CS / omega, ks * CS / omega) *
@@ -160,8 +162,10 @@ std::string dashpots(int length)
       CS);
 }
 
-/** Amplitudes of the pressure and shear waves that come back from dashpots with sigma_xx = -rho c_p v_x and sigma_xy = -rho c_s v_y,
-    for one that comes with amplitude 1: see Lysmer and Kuhlemeyer, J. Eng. Mech. Div. 95 (1969) 859. */
+/** Amplitudes of the pressure and shear waves that come back from dashpots with sigma_xx = -rho c_p
+ *  v_x and sigma_xy = -rho c_s v_y,
+ *     for one that comes with amplitude 1: see Lysmer and Kuhlemeyer, J. Eng. Mech. Div. 95 (1969)
+ *     859. */
 std::array<double, 2> echo_of_dashpots(const Incoming &w)
 {
   const double theta = w.angle * PI / 180.0, slowness = sin(theta) / (w.shear ? CS : 1.0);
@@ -197,7 +201,8 @@ PARAMETER_TEST(Oblique, Leaves, Incoming,
   if (w.height > 4) LONG_CASE();
   const auto goes_on = send(w, w.length + 150, "");
   const Echo of_10 = echo("layer of 10 cells", w, goes_on, 10, layer(10));
-  // 0.01 comes back from the wall at 60 degrees, and more at those near it of which a packet is made, too
+  // 0.01 comes back from the wall at 60 degrees, and more at those near it of which a packet is
+  // made, too
   EXPECT_LT(of_10.p, w.angle < 60 ? 0.012 : 0.02);
   EXPECT_LT(of_10.s, w.angle < 60 ? 0.012 : 0.021);
   EXPECT_LT(of_10.energy, w.angle < 60 ? 1.5e-4 : 1e-3);
@@ -211,8 +216,8 @@ PARAMETER_TEST(Oblique, Leaves, Incoming,
   EXPECT_NEAR(of_dashpots.s, exact[1], 0.02);
 }
 
-// A push in the middle of a body: what points do next to it is what they do in a body so large that no echo comes back, and nothing
-// of what dashpots leave. 10 cells around
+// A push in the middle of a body: what points do next to it is what they do in a body so large that
+// no echo comes back, and nothing of what dashpots leave. 10 cells around
 SERIAL_TEST(Pulse, LikeInALargeBody)
 {
   LONG_CASE();
@@ -258,7 +263,8 @@ SERIAL_TEST(Pulse, LikeInALargeBody)
   EXPECT_GT(measured("energy of the difference, dashpots", off(velocities(16, dashpots))), 0.01);
 }
 
-// Velocities at random in a body with layers all around: energy is lost in each part of the run, and nothing grows in 20,000 steps
+// Velocities at random in a body with layers all around: energy is lost in each part of the run,
+// and nothing grows in 20,000 steps
 SERIAL_TEST(Noise, Decays)
 {
   for (const char *options : first_of(1, {"scheme musl", "", "shape cubic", "frame total"})) {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -25,7 +25,8 @@ std::string at_rest(double load, double tolerance = 3e-5)
                 tolerance);
 }
 
-/** A bar of length 1 and width w with free sides, a quarter of it, and a load on its end (benchmark S1). */
+/** A bar of length 1 and width w with free sides, a quarter of it, and a load on its end (benchmark
+ *  S1). */
 std::string bar(const std::string &options, double w, const std::string &load,
                 const std::string &end)
 {
@@ -60,8 +61,8 @@ double stretch_at_rest(const std::string &scene)
 
 }    // namespace
 
-// Layers at any depth give all of the force, at the surface. Half a spacing below it, forces on nodes are the gradients of quadratic
-// functions summed over all layers, those of a uniform stress.
+// Layers at any depth give all of the force, at the surface. Half a spacing below it, forces on
+// nodes are the gradients of quadratic functions summed over all layers, those of a uniform stress.
 TEST(Face, SharesOfLayers)
 {
   for (double c = 0.0; c < 1.0; c += 0.01) {
@@ -157,7 +158,8 @@ SERIAL_TEST(Bar, UniaxialStrain)
       }
 }
 
-// resultant and moment are those of the traction on the face, wherever the layers of points are below it
+// resultant and moment are those of the traction on the face, wherever the layers of points are
+// below it
 SERIAL_TEST(Face, ResultantAndMoment)
 {
   for (const double off : {0.0, 0.013, -0.02}) {
@@ -193,7 +195,8 @@ SERIAL_TEST(Face, ResultantAndMoment)
   }
 }
 
-// a face of a block whose other faces are open, a surface of triangles, and points that have an area together
+// a face of a block whose other faces are open, a surface of triangles, and points that have an
+// area together
 SERIAL_TEST(Face, OtherSurfaces)
 {
   std::string cube = "solid cube\n";
@@ -231,7 +234,8 @@ SERIAL_TEST(Face, OtherSurfaces)
   EXPECT_NEAR(tagged.fix_vector("load", 7)[1], 3.0 * 0.24, 1e-12);
 }
 
-// points at the surface that are parts of cells, at any place of a plane: area, resultant, and moment
+// points at the surface that are parts of cells, at any place of a plane: area, resultant, and
+// moment
 SERIAL_TEST(Face, PartsOfCells)
 {
   for (double part = 0.15; part < 1.1; part += 0.1) {
@@ -268,7 +272,8 @@ SERIAL_TEST(Face, PartsOfCells)
   EXPECT_NEAR(measured("relaxed: area over exact", area), 1.0, 0.015);
 }
 
-// planes that are inclined to the lattice of points, and what is told where layers are closer together than points
+// planes that are inclined to the lattice of points, and what is told where layers are closer
+// together than points
 SERIAL_TEST(Face, Inclined)
 {
   const auto slope = [](double angle, const std::string &more) {
@@ -294,7 +299,8 @@ SERIAL_TEST(Face, Inclined)
   EXPECT_NEAR(run.fix_vector("load", 7)[3] / (18.0 * std::sqrt(2.0)), 1.0, 1e-12);
 }
 
-// a ball: no resultant, and the area but for terms of second order in the distance of points over the radius
+// a ball: no resultant, and the area but for terms of second order in the distance of points over
+// the radius
 SERIAL_TEST(Face, Ball)
 {
   Scene run(
@@ -307,7 +313,8 @@ SERIAL_TEST(Face, Ball)
   for (const int k : {0, 1, 2, 4, 5, 6}) EXPECT_NEAR(values[k], 0.0, 1e-12 * 3.0 * area);
 }
 
-/** A pipe of rubber under pressure, plane strain, a quarter of it, whose bore is cut by the lattice (benchmark S2). */
+/** A pipe of rubber under pressure, plane strain, a quarter of it, whose bore is cut by the lattice
+ *  (benchmark S2). */
 static std::string rubber_pipe(const std::string &options, const std::string &load, double p)
 {
   return plane("si", "f f", "0 3.2 0 3.2", 1, 0.03) + "fix grid all mpm 0.1 " + options +
@@ -319,7 +326,8 @@ static std::string rubber_pipe(const std::string &options, const std::string &lo
                "fix load all mpm/traction region bore " + load + "\nrun 1000");
 }
 
-// a pipe of rubber under pressure, plane strain, a quarter of it, whose bore is cut by the lattice (benchmark S2): radii to 1 %
+// a pipe of rubber under pressure, plane strain, a quarter of it, whose bore is cut by the lattice
+// (benchmark S2): radii to 1 %
 SERIAL_TEST(Pipe, Widens)
 {
   struct Case {
@@ -355,7 +363,8 @@ SERIAL_TEST(Pipe, Widens)
   }
 }
 
-// beyond a stretch of 1.5 of its bore the pipe is several percent too narrow in the updated frame (S2 at 0.5 of the shear modulus: 1.7955), which a warning tells
+// beyond a stretch of 1.5 of its bore the pipe is several percent too narrow in the updated frame
+// (S2 at 0.5 of the shear modulus: 1.7955), which a warning tells
 SERIAL_TEST(Pipe, StretchedTooMuchIsTold)
 {
   const auto told = [](const char *frame, double p) {
@@ -370,7 +379,8 @@ SERIAL_TEST(Pipe, StretchedTooMuchIsTold)
   EXPECT_NEAR(measured("stretch", stretch), 1.65, 0.1);
 }
 
-// pressure on all of a free body: neither force nor torque, though it moves, turns, and deforms, and ends with that pressure inside
+// pressure on all of a free body: neither force nor torque, though it moves, turns, and deforms,
+// and ends with that pressure inside
 SERIAL_TEST(Free, NoForceNoTorque)
 {
   for (const char *options :
@@ -423,9 +433,9 @@ SERIAL_TEST(Free, PressureInside)
   }
 }
 
-// pressure of water at rest: the weight of the water in place of the body, upwards through its center (Archimedes), also of
-// a part that is below the water table only; a body with the density of water hangs where it is, with the pressure of the water
-// at each of its points inside
+// pressure of water at rest: the weight of the water in place of the body, upwards through its
+// center (Archimedes), also of a part that is below the water table only; a body with the density
+// of water hangs where it is, with the pressure of the water at each of its points inside
 SERIAL_TEST(Free, WaterAtRest)
 {
   for (const char *options : {"", "frame total", "shape cubic"}) {
@@ -472,8 +482,9 @@ SERIAL_TEST(Free, WaterAtRest)
   EXPECT_LT(measured("error of the stress", most / 9810), 0.02);
 }
 
-// a straight side around an axis of symmetry is a cylinder, whose deeper layers are rings of another length: a tube under pressure
-// inside has the resultant of its side, and the displacements of Lame (plane stress)
+// a straight side around an axis of symmetry is a cylinder, whose deeper layers are rings of
+// another length: a tube under pressure inside has the resultant of its side, and the displacements
+// of Lame (plane stress)
 SERIAL_TEST(Tube, AroundAnAxis)
 {
   for (const char *options : {"stress gradient", "frame total"}) {
@@ -499,7 +510,8 @@ SERIAL_TEST(Tube, AroundAnAxis)
   }
 }
 
-// a hollow sphere under pressure around an axis of symmetry: displacements next to the bore by Lame's solution, to 1 % in the mean
+// a hollow sphere under pressure around an axis of symmetry: displacements next to the bore by
+// Lame's solution, to 1 % in the mean
 SERIAL_TEST(Sphere, Widens)
 {
   const auto scene = plane("si", "f f", "0 2.2 0 2.2", 1, 0.03) +
@@ -558,7 +570,8 @@ SERIAL_TEST(Units, OfForce)
   }
 }
 
-// pressure turns with the body, of whatever law: the resultant is that of the face, and keeps its size
+// pressure turns with the body, of whatever law: the resultant is that of the face, and keeps its
+// size
 SERIAL_TEST(Face, Turns)
 {
   for (const char *law : {"linear 1e6 0.3", "neohookean 1e6 0.3"})
@@ -634,7 +647,8 @@ SERIAL_TEST(Traction, TellsOfLostPoints)
   }
 }
 
-// a table in time (fix mpm/record): values between its rows, before, and after, and their integrals, also where the time step changes and after a restart
+// a table in time (fix mpm/record): values between its rows, before, and after, and their
+// integrals, also where the time step changes and after a restart
 TEST(Record, TableInTime)
 {
   const ScratchFile file("record.csv",
@@ -689,7 +703,8 @@ TEST(Record, TableInTime)
   EXPECT_THAT(error_of(scene + record + " hold maybe\n"), HasSubstr("hold"));
 }
 
-// a plane in the middle of a body is no surface: its load would act on the section, as would that of a step on what goes on above it
+// a plane in the middle of a body is no surface: its load would act on the section, as would that
+// of a step on what goes on above it
 SERIAL_TEST(Plane, ThroughABodyIsTold)
 {
   const auto told = [](const std::string &bodies, double height, const std::string &group) {
@@ -737,7 +752,8 @@ SERIAL_TEST(Traction, TellsOfNodesOfElements)
   EXPECT_THAT(run.error(start + nodes + end), HasSubstr("all points of group all are nodes"));
 }
 
-// a round bar that is drawn by a pressure: its rim curls in the updated frame and holds the load there, at rest with a third of the strain of theory
+// a round bar that is drawn by a pressure: its rim curls in the updated frame and holds the load
+// there, at rest with a third of the strain of theory
 SERIAL_TEST(Pressure, OfARimThatCurls)
 {
   const auto scene = [](const char *frame) {

@@ -1,12 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 300
 
-// Fix mpm/mesh/contact: bodies on one mesh that touch, slide, and part, against Coulomb's law, the exact motion of bars that
-// collide, and the weights of what lies on what.
+// Fix mpm/mesh/contact: bodies on one mesh that touch, slide, and part, against Coulomb's law, the
+// exact motion of bars that collide, and the weights of what lies on what.
 
 #include "meshgrid/mesh_grid_testing.h"
 #include "mpm_lammps.h"
@@ -85,8 +85,8 @@ SERIAL_TEST(MeshContact, BlockThatSlides)
   }
 }
 
-// Static friction holds up to its coefficient; what is above slides with the kinetic one; stick does not slide. The block has
-// settled before it is pulled, more and more for a time of 0.3
+// Static friction holds up to its coefficient; what is above slides with the kinetic one; stick
+// does not slide. The block has settled before it is pulled, more and more for a time of 0.3
 SERIAL_TEST(MeshContact, BlockThatIsPulled)
 {
   const ScratchFile file("slide.msh", cells(QUADS, 0.1, {24, 13, 0}));
@@ -103,7 +103,8 @@ SERIAL_TEST(MeshContact, BlockThatIsPulled)
                            until));
     return run.variable("x") - x;
   };
-  // what is held moves by its shear, rho a H (H/2 + H_floor)/G: the floor is longer than the block, and moves less
+  // what is held moves by its shear, rho a H (H/2 + H_floor)/G: the floor is longer than the block,
+  // and moves less
   const double shear = 0.5 / 385 * (0.5 / 2 + 0.5);
   EXPECT_LT(measured("way of a block that is held", way("law coulomb 0.4", 0.3, 1.0)), 0.3 * shear);
   EXPECT_LT(measured("by static friction only", way("law coulomb 0.1 0.4", 0.15, 1.0)),
@@ -111,8 +112,8 @@ SERIAL_TEST(MeshContact, BlockThatIsPulled)
   EXPECT_LT(measured("way of one that sticks", way("law stick", 1.0, 1.0)), shear);
 }
 
-// Two equal bars that meet exchange their velocities: they touch when they should, part when the waves are back, and their
-// momentum is what it was to the last digit
+// Two equal bars that meet exchange their velocities: they touch when they should, part when the
+// waves are back, and their momentum is what it was to the last digit
 SERIAL_TEST(MeshContact, BarsThatCollide)
 {
   double lost[2];
@@ -157,8 +158,8 @@ SERIAL_TEST(MeshContact, BarsThatCollide)
   EXPECT_GT(lost[0] / lost[1], 1.25);    // a wave front, which is never smooth
 }
 
-// What lies on each other, at rest: each bears the weight of what is above. The upper two lie side by side, so that three bodies
-// meet at nodes
+// What lies on each other, at rest: each bears the weight of what is above. The upper two lie side
+// by side, so that three bodies meet at nodes
 SERIAL_TEST(MeshContact, BlocksAtRest)
 {
   for (const Kind kind : {QUADS, TRIANGLES}) {
@@ -185,7 +186,8 @@ SERIAL_TEST(MeshContact, BlocksAtRest)
 
 namespace {
 
-/** A block on a block between smooth walls, under a load on the upper side of the mesh. parts: the upper one is two of them. */
+/** A block on a block between smooth walls, under a load on the upper side of the mesh. parts: the
+ *  upper one is two of them. */
 std::string pressed(const std::string &mesh, const std::string &load, bool parts)
 {
   return box(2, "lj", "f f p", "0 1.6 0 1 -0.5 0.5", 3, 0.1) +
@@ -201,8 +203,8 @@ std::string pressed(const std::string &mesh, const std::string &load, bool parts
 
 }    // namespace
 
-// A load on a side of the mesh is of the body that is there: the force of contact becomes the load, and each step changes
-// the momentum of the upper block by load and contact
+// A load on a side of the mesh is of the body that is there: the force of contact becomes the load,
+// and each step changes the momentum of the upper block by load and contact
 SERIAL_TEST(MeshContact, PressedBlock)
 {
   for (const Kind kind : {QUADS, TRIANGLES})
@@ -224,7 +226,8 @@ SERIAL_TEST(MeshContact, PressedBlock)
                    "fix mean all ave/time 1 400 400 v_f\nrun 2000\n");
       const double mean = run.lmp->modify->get_fix_by_id("mean")->compute_scalar();
       EXPECT_NEAR(measured(std::string(load) + ": contact over load", mean / 8.0), 1.0, 0.01);
-      // uniaxial strain; in triangles, points on sides between these make bodies softer, without contact, too
+      // uniaxial strain; in triangles, points on sides between these make bodies softer, without
+      // contact, too
       if (kind != QUADS) continue;
       double top = 0.0, n = 0.0;
       for (int i = 0; i < run.n(); i++)
@@ -237,7 +240,8 @@ SERIAL_TEST(MeshContact, PressedBlock)
     }
 }
 
-// Where two bodies meet at the side, each has its share of the load: nothing of it is lost, and nothing is there twice
+// Where two bodies meet at the side, each has its share of the load: nothing of it is lost, and
+// nothing is there twice
 SERIAL_TEST(MeshContact, LoadOfTwoBodies)
 {
   const ScratchFile file("pressed.msh", cells(QUADS, 0.1, {16, 10, 0}));

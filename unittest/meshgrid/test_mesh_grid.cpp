@@ -1,12 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 600
 
-// Fix mpm/mesh: points on a mesh of triangles, quadrangles, tetrahedra, or hexahedra. Case S2 of the benchmarks, and Lame's
-// solution of a thick tube.
+// Fix mpm/mesh: points on a mesh of triangles, quadrangles, tetrahedra, or hexahedra. Case S2 of
+// the benchmarks, and Lame's solution of a thick tube.
 
 #include "meshgrid/mesh_grid_testing.h"
 #include "mpm_lammps.h"
@@ -81,7 +81,8 @@ SERIAL_TEST(MeshGrid, TubeUnderPressure)
         }
         error[n == 12] =
             measured(strprintf("error with %d cells, %s", n, frame.c_str()), sqrt(square / all));
-        // what holds the quarter is the pressure on the bore, which in the total frame is that of the body by now
+        // what holds the quarter is the pressure on the bore, which in the total frame is that of
+        // the body by now
         const double u = (1 + nu) / E * p / 3.0 * ((1 - 2 * nu) + 4.0);
         const double bore = frame == "total" ? 1.0 + u : 1.0;
         for (const int k : {6, 8}) EXPECT_NEAR(entry(run, k), -p * bore, 1e-6 * p);
@@ -105,7 +106,8 @@ SERIAL_TEST(MeshGrid, TubeAtFiniteStrain)
       run.commands("fix v all viscous 0.02\nfix d all mpm/dt 0.5 until 60\nrun 100000\n");
       const auto end = run.gather();
 
-      // points do not lie on the surfaces: a and b from the area of their circles, which is linear next to these
+      // points do not lie on the surfaces: a and b from the area of their circles, which is linear
+      // next to these
 
       double low[4] = {0.0}, high[4] = {0.0};    // of the fits of r^2 by R^2: sums of x, y, xx, xy
       int n[2] = {0, 0};
@@ -129,8 +131,9 @@ SERIAL_TEST(MeshGrid, TubeAtFiniteStrain)
     }
 }
 
-// A bar that is pulled by its ends has one stress everywhere. Linear functions have its strain exactly on any mesh; the forces of
-// points in bent quadrangles and hexahedra are those of a midpoint rule
+// A bar that is pulled by its ends has one stress everywhere. Linear functions have its strain
+// exactly on any mesh; the forces of points in bent quadrangles and hexahedra are those of a
+// midpoint rule
 SERIAL_TEST(MeshGrid, PatchOfAnyCells)
 {
   for (const Kind kind : {TRIANGLES, QUADS, TETRAHEDRA, HEXAHEDRA}) {
@@ -209,7 +212,8 @@ SERIAL_TEST(MeshGrid, EnergyAndMomentum)
     }
 }
 
-// A fluid that spins between curved walls keeps to its circles: it feels no force but that towards the center, m v^2/r
+// A fluid that spins between curved walls keeps to its circles: it feels no force but that towards
+// the center, m v^2/r
 SERIAL_TEST(MeshGrid, SlipAlongACurve)
 {
   const auto ring = gmsh(QUADS, {6, 48, 0}, [](double s, double t, double) {
@@ -244,14 +248,15 @@ SERIAL_TEST(MeshGrid, SlipInACorner)
             "velocity all set -0.2 -0.1 0\ntimestep 0.01\nrun 1\n");
   for (const auto &s : run.gather())
     if (s.x[0] < 0.15 && s.x[1] < 0.15) {
-      // a fourth of the way into the cell: its corner has no velocity, two nodes one along their wall
+      // a fourth of the way into the cell: its corner has no velocity, two nodes one along their
+      // wall
       EXPECT_NEAR(s.v[0], -0.2 * 0.25, 1e-12);
       EXPECT_NEAR(s.v[1], -0.1 * 0.25, 1e-12);
     }
 }
 
-// Creeping flow: a cylinder of radius 1 that moves in the middle of one of radius 4 feels a drag of 4 pi mu U/(ln 4 - 15/17) per length.
-// One point per quadrangle, as these lock with more
+// Creeping flow: a cylinder of radius 1 that moves in the middle of one of radius 4 feels a drag of
+// 4 pi mu U/(ln 4 - 15/17) per length. One point per quadrangle, as these lock with more
 SERIAL_TEST(MeshGrid, CreepingFlowAroundACylinder)
 {
   const double exact = 4.0 * PI / (log(4.0) - 15.0 / 17.0), U = 1e-3;
@@ -307,7 +312,8 @@ TEST(MeshGrid, RanksAndRestart)
     }
 }
 
-// A pressure, or means against locking, that come after a restart know where the nodes have gone; another frame is an error
+// A pressure, or means against locking, that come after a restart know where the nodes have gone;
+// another frame is an error
 SERIAL_TEST(MeshGrid, MoreOptionsAfterARestart)
 {
   const ScratchFile file("tube.msh", tube(QUADS, 4)), restart("restart");
@@ -387,7 +393,8 @@ SERIAL_TEST(MeshGrid, BadInput)
             0u);
 }
 
-// Linear cells lock when the material keeps its volume, which is said: but of none that keep it without more, and of no fluids
+// Linear cells lock when the material keeps its volume, which is said: but of none that keep it
+// without more, and of no fluids
 SERIAL_TEST(MeshGrid, Locking)
 {
   const ScratchFile triangles("triangles.msh", tube(TRIANGLES, 4)),
@@ -414,7 +421,8 @@ SERIAL_TEST(MeshGrid, Locking)
   EXPECT_EQ(warnings(triangles, "neohookean 1 0.499", 0, "locking fbar"), 0u);
 }
 
-// Lame's tube with a Poisson ratio of 0.499 widens as it should with means, and quadrangles by half of that without
+// Lame's tube with a Poisson ratio of 0.499 widens as it should with means, and quadrangles by half
+// of that without
 SERIAL_TEST(MeshGrid, FbarDoesNotLock)
 {
   const double p = 1e-5, nu = 0.499;
@@ -488,7 +496,8 @@ SERIAL_TEST(MeshGrid, LostLoads)
   EXPECT_THAT(half[0], HasSubstr("traction on xhi acts on nothing in 43.8 % of its area"));
 }
 
-// Points on sides between triangles have the strain of one of them by rounding: bodies are too soft, and it is told
+// Points on sides between triangles have the strain of one of them by rounding: bodies are too
+// soft, and it is told
 SERIAL_TEST(MeshGrid, PointsOnSides)
 {
   // a column whose points are on the diagonals, or moved off these

@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input ranks
 // mpi: 1 4
 
-// Fix mpm/mesh/heat: conduction between points on a mesh, with temperatures, fluxes, and convection at its groups.
+// Fix mpm/mesh/heat: conduction between points on a mesh, with temperatures, fluxes, and convection
+// at its groups.
 
 #include "bad_input_testing.h"
 #include "meshgrid/mesh_grid_testing.h"
@@ -15,7 +16,8 @@ namespace {
 
 using Map = std::function<std::array<double, 3>(double, double, double)>;
 
-/** A block of 1 x 1 x 1 (2d: 1 x 1), whose inner nodes are moved by a part of a cell, of rectangles along the axes. */
+/** A block of 1 x 1 x 1 (2d: 1 x 1), whose inner nodes are moved by a part of a cell, of rectangles
+ *  along the axes. */
 std::string block(Kind kind, int n)
 {
   if (kind == QUADS || kind == HEXAHEDRA)
@@ -64,8 +66,9 @@ double out(Scene &run, int k)
 
 }    // namespace
 
-// A temperature that is linear in x is that of any mesh of triangles and tetrahedra, exactly, and so is its flux; of quadrangles and hexahedra
-// where they are not bent, as points integrate over bent ones with an error of second order in their distance
+// A temperature that is linear in x is that of any mesh of triangles and tetrahedra, exactly, and
+// so is its flux; of quadrangles and hexahedra where they are not bent, as points integrate over
+// bent ones with an error of second order in their distance
 SERIAL_TEST(MeshHeat, Patch)
 {
   for (const Kind kind : {TRIANGLES, QUADS, TETRAHEDRA, HEXAHEDRA}) {
@@ -111,8 +114,8 @@ SERIAL_TEST(MeshHeat, Ring)
   }
 }
 
-// A slab that is insulated on one side and cooled by convection on the other, Bi = 1 (benchmark M2a), in steps below and above the
-// explicit limit
+// A slab that is insulated on one side and cooled by convection on the other, Bi = 1 (benchmark
+// M2a), in steps below and above the explicit limit
 SERIAL_TEST(MeshHeat, Slab)
 {
   const ScratchFile file("slab.msh", gmsh(QUADS, {20, 2, 0}, [](double x, double y, double) {
@@ -132,15 +135,16 @@ SERIAL_TEST(MeshHeat, Slab)
           n[k] += 1.0;
         }
     }
-    // at a quarter of a cell from the ends: cos(0.86033 x) is flat at the one, and has a slope of -0.4 at the other
+    // at a quarter of a cell from the ends: cos(0.86033 x) is flat at the one, and has a slope of
+    // -0.4 at the other
     EXPECT_NEAR(measured("insulated side", ends[0] / n[0]), 0.772526, 0.004);
     EXPECT_NEAR(measured("cooled side", ends[1] / n[1] - 0.0125 * 0.504522), 0.504522, 0.004);
     EXPECT_NEAR(all - 0.1, out(run, 1), 1e-14);    // mass 0.1
   }
 }
 
-// Heat comes in on one side and leaves by convection on the other: T = T_0 + q/h + q (1 - x)/k, with k along x of a material that is
-// turned by a right angle
+// Heat comes in on one side and leaves by convection on the other: T = T_0 + q/h + q (1 - x)/k,
+// with k along x of a material that is turned by a right angle
 SERIAL_TEST(MeshHeat, FluxAndConvection)
 {
   const ScratchFile file("block.msh", block(TETRAHEDRA, 2));
@@ -153,7 +157,8 @@ SERIAL_TEST(MeshHeat, FluxAndConvection)
   EXPECT_NEAR(out(run, 2), -2.0, 1e-10);
 }
 
-// A body that is stretched along the flow by 1.5 conducts less, by that factor, and one that is stretched across more
+// A body that is stretched along the flow by 1.5 conducts less, by that factor, and one that is
+// stretched across more
 SERIAL_TEST(MeshHeat, OfAStretchedBody)
 {
   for (const bool along : {true, false}) {
@@ -194,8 +199,10 @@ TEST(MeshHeat, RanksAndRestart)
   EXPECT_EQ(run.whole.fix("h")->compute_scalar(), run.again.fix("h")->compute_scalar());
 }
 
-// Two layers of conductivities 1 and 10, from x = 0.5 or in the middle of the next cells: with the conductivities of the points 8 and 4 % too much heat
-// went through the latter. Not so with means, also in a body that is stretched along or across the layers; triangles have an error of first order
+// Two layers of conductivities 1 and 10, from x = 0.5 or in the middle of the next cells: with the
+// conductivities of the points 8 and 4 % too much heat went through the latter. Not so with means,
+// also in a body that is stretched along or across the layers; triangles have an error of first
+// order
 SERIAL_TEST(MeshHeat, LayersThatCutCells)
 {
   for (const Kind kind : {QUADS, TRIANGLES})
@@ -242,8 +249,9 @@ SERIAL_TEST(MeshHeat, LayersThatCutCells)
       }
 }
 
-// Water of 10 degrees freezes below a wall of -20, and ice of -10 melts on one of 20, for an hour (Neumann: 27.765 mm, 12.823 mm), wherever the
-// table of the conductivity has its jump next to the melting temperature. Partly molten points had that of one phase: 24.2 and 15.2 mm
+// Water of 10 degrees freezes below a wall of -20, and ice of -10 melts on one of 20, for an hour
+// (Neumann: 27.765 mm, 12.823 mm), wherever the table of the conductivity has its jump next to the
+// melting temperature. Partly molten points had that of one phase: 24.2 and 15.2 mm
 SERIAL_TEST(MeshHeat, FrontsDoNotSeeTheSideOfTheJump)
 {
   const int n = 100;

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics input
 // mpi: 1 2
@@ -49,8 +49,8 @@ TEST(ErrorNorms, AreThoseOfTheDefinition)
   EXPECT_NEAR(run.evaluate("c_e[5]"), 0.1, 1e-14);
 }
 
-// points of the group only, with their volumes as weights, at unwrapped positions; an error that is not a
-// number stays one, whichever point has it
+// points of the group only, with their volumes as weights, at unwrapped positions; an error that is
+// not a number stays one, whichever point has it
 TEST(ErrorNorms, VolumesGroupsAndImages)
 {
   Scene run(space("lj", "p p p", "0 4 0 4 0 4", 3) + R"(

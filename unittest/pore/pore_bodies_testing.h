@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_PORE_BODIES_TESTING_H
 #define MPM_PORE_BODIES_TESTING_H
 
-// Bodies with pore water that collide, for tests of fix mpm/pore on several ranks and after restarts.
+// Bodies with pore water that collide, for tests of fix mpm/pore on several ranks and after
+// restarts.
 
 #include "mpm_lammps.h"
 
@@ -12,8 +13,9 @@
 
 namespace MPM_TEST {
 
-/** Input of a disk and a block of soils and a dry block, which collide across ranks and periodic faces.
- *  water: arguments of fix mpm/pore; variables: input lines that define the variables in them. */
+/** Input of a disk and a block of soils and a dry block, which collide across ranks and periodic
+ *  faces. water: arguments of fix mpm/pore; variables: input lines that define the variables in
+ *  them. */
 inline std::string colliding(const std::string &variables, const std::string &water)
 {
   return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
@@ -53,8 +55,8 @@ inline std::vector<PointWater> water_of_points(Scene &run)
 constexpr const char *PORE = "compute pore all mpm/atom pore\n"
                              "compute saturation all mpm/atom saturation\n";
 
-/** Largest difference between the pressures and between the saturations of the same points of two scenes.
- *  It is 1e300 if there are no points, or not the same number of them. */
+/** Largest difference between the pressures and between the saturations of the same points of two
+ *  scenes. It is 1e300 if there are no points, or not the same number of them. */
 inline double water_difference(Scene &a, Scene &b)
 {
   const auto one = water_of_points(a), other = water_of_points(b);
@@ -68,8 +70,8 @@ inline double water_difference(Scene &a, Scene &b)
                   measured("of saturations", most[1]));
 }
 
-/** Expects the same results on one rank and on all: states of points, volume of the water that came in,
- *  and pressures and saturations within this difference. */
+/** Expects the same results on one rank and on all: states of points, volume of the water that came
+ *  in, and pressures and saturations within this difference. */
 inline void expect_same_on_ranks(const std::string &scene, double difference)
 {
   OnRanks run(scene + PORE, "run 300\n");
@@ -79,8 +81,8 @@ inline void expect_same_on_ranks(const std::string &scene, double difference)
               run.parallel.fix("water")->compute_scalar(), 1e-12);
 }
 
-/** Expects that a scene of colliding() gives the same bits with a restart in the middle as without it.
- *  variables: as for colliding(). */
+/** Expects that a scene of colliding() gives the same bits with a restart in the middle as without
+ *  it. variables: as for colliding(). */
 inline void expect_continues(const std::string &scene, const std::string &variables)
 {
   const std::string tail = scene.substr(scene.find("fix m one"));

@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// The command mpm_geostatic: level ground at rest under its weight. Ground with pore water is in test_pore.cpp.
+// The command mpm_geostatic: level ground at rest under its weight. Ground with pore water is in
+// test_pore.cpp.
 
 #include "mpm_lammps.h"
 
@@ -90,8 +91,9 @@ SERIAL_TEST(Geostatic, SoilsAndUnits)
   }
 }
 
-// points that go with nodes off the face do not end there, and forces on nodes are then balanced by a stress next to the face that is not
-// the weight above, on any lattice: this is told, and nothing of ground that ends at the face
+// points that go with nodes off the face do not end there, and forces on nodes are then balanced by
+// a stress next to the face that is not the weight above, on any lattice: this is told, and nothing
+// of ground that ends at the face
 SERIAL_TEST(Geostatic, GapsAreTold)
 {
   for (const int n : {10, 20})

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -131,8 +131,8 @@ double vertical(const Scene::State &s)
 
 }    // namespace
 
-// Velocities of soil and water that fill a periodic box fade towards each other with the rate of drag, exactly, and
-// their momentum stays.
+// Velocities of soil and water that fill a periodic box fade towards each other with the rate of
+// drag, exactly, and their momentum stays.
 PARAMETER_TEST(Relaxation, IsExact, std::string,
                Values("transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme musl",
                       "transfer apic scheme musl", "transfer aflip 1.0", "shape cubic",
@@ -179,7 +179,8 @@ PARAMETER_TEST(Relaxation, IsExact, std::string,
   }
 }
 
-// A bed of soil in a tank, with water above it, stays at rest: pressure of the water, weight of the soil less buoyancy.
+// A bed of soil in a tank, with water above it, stays at rest: pressure of the water, weight of the
+// soil less buoyancy.
 PARAMETER_TEST(Still, StaysAtRest, std::string,
                Values("transfer apic", "transfer flip 1.0 scheme musl", "transfer aflip 1.0",
                       "transfer apic smooth 0.5", "shape cubic"))
@@ -226,8 +227,8 @@ PARAMETER_TEST(Still, StaysAtRest, std::string,
 
 namespace {
 
-/** A bed of soil of 0.5 m under water up to this height, whose state at rest mpm_geostatic gives. The floor is off nodes by a part of a
- *  cell. */
+/** A bed of soil of 0.5 m under water up to this height, whose state at rest mpm_geostatic gives.
+ *  The floor is off nodes by a part of a cell. */
 std::string bed(int dim, double h, double height, const std::string &options, double offset)
 {
   Column c;
@@ -244,7 +245,8 @@ const double BUOYANT = (1.0 - POROSITY) * (GRAINS - WATER) * G;
 
 }    // namespace
 
-// level ground in water at rest, as mpm_geostatic finds it: what is left of the forces of both, and the stress of soil
+// level ground in water at rest, as mpm_geostatic finds it: what is left of the forces of both, and
+// the stress of soil
 TEST(Geostatic, StaysAtRest)
 {
   const double dt = 2.0e-5;
@@ -300,8 +302,9 @@ TEST(Geostatic, RanksAndRestart)
   EXPECT_LT(run.difference(), 1e-11);
 }
 
-// The standing wave of a sealed column: frequency and decay of equations for both velocities (u-v-p), whose roots are
-// those of data on saturated_modes: 4 ordinary differential equations, which are solved here.
+// The standing wave of a sealed column: frequency and decay of equations for both velocities
+// (u-v-p), whose roots are those of data on saturated_modes: 4 ordinary differential equations,
+// which are solved here.
 struct Mode {
   double K, k;    ///< bulk modulus of water, hydraulic conductivity
   std::string options;
@@ -443,14 +446,15 @@ SERIAL_TEST(Consolidation, FollowsTerzaghi)
   }
 }
 
-// Water flows up through a bed of soil that lies on a sieve, driven by a force in a loop (a periodic column): Darcy's
-// flow, gradient of the pressure, effective stress, and the gradient at which the bed is lifted. The force is uniform
-// in the water, and the soil weighs so much less that the difference is that of its weight under water.
-// A body elsewhere, in contact with the soil if it were here, changes nothing, nor do walls at the sides, which hold soil
-// and water.
-// In a stiff bed, which the seepage does not make higher, what is left of the effective stress is right to 2 % of itself with aflip: other
-// transfers take a part of the head where the water changes its speed at the ends of the bed. Stresses are means over cells, in which those
-// of points vary as nodes do not see.
+// Water flows up through a bed of soil that lies on a sieve, driven by a force in a loop (a
+// periodic column): Darcy's flow, gradient of the pressure, effective stress, and the gradient at
+// which the bed is lifted. The force is uniform in the water, and the soil weighs so much less that
+// the difference is that of its weight under water. A body elsewhere, in contact with the soil if
+// it were here, changes nothing, nor do walls at the sides, which hold soil and water. In a stiff
+// bed, which the seepage does not make higher, what is left of the effective stress is right to 2 %
+// of itself with aflip: other transfers take a part of the head where the water changes its speed
+// at the ends of the bed. Stresses are means over cells, in which those of points vary as nodes do
+// not see.
 struct Flow {
   double gradient;
   std::string options, with = "";
@@ -529,8 +533,9 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
                          "run 100000\nunfix end\n",
                          stiff ? 1.5 : 1.0));
 
-  // means over time: of the flux in all of the column, as what flows through it is the same everywhere; of the gradient
-  // of the pressure and of the vertical stress of the soil inside of the bed; of all forces on the soil
+  // means over time: of the flux in all of the column, as what flows through it is the same
+  // everywhere; of the gradient of the pressure and of the vertical stress of the soil inside of
+  // the bed; of all forces on the soil
 
   double flux = 0.0, slope = 0.0, stress = 0.0, forces = 0.0;
   std::vector<double> of_cells(std::lround(0.3 / c.h), 0.0);
@@ -587,8 +592,9 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
   EXPECT_NEAR(measured("all forces on the soil", forces / weight), 0.0, 1.0e-3);
 }
 
-// Forces of drag by laws for spheres: what is left of a difference of velocities after a long time, in a periodic box
-// where a force drives the water through soil that is held, is what has just this drag.
+// Forces of drag by laws for spheres: what is left of a difference of velocities after a long time,
+// in a periodic box where a force drives the water through soil that is held, is what has just this
+// drag.
 SERIAL_TEST(Drag, OfSpheresIsThatOfTheLaw)
 {
   const double d = 0.01, mu = 1.0e-3, n = POROSITY;
@@ -614,7 +620,8 @@ SERIAL_TEST(Drag, OfSpheresIsThatOfTheLaw)
     }
 }
 
-// Soil with another porosity than that of the permeability; and the limit of the time step, by the formula of the page
+// Soil with another porosity than that of the permeability; and the limit of the time step, by the
+// formula of the page
 SERIAL_TEST(Drag, OfDarcyDependsOnPorosity)
 {
   const Column c = Column::full(1.0e5, 1.0e6, "darcy 1.0e-9 0.5");
@@ -678,8 +685,9 @@ double velocity_of_soil(Scene &run, double from, double to)
 
 }    // namespace
 
-// A plug of soil in a closed column of water sinks, or rises if its grains are light, as fast as the drag of the water that it
-// pushes aside allows: the superficial velocity of this is that of the plug, k (rho_s/rho_f - 1) (1 - n).
+// A plug of soil in a closed column of water sinks, or rises if its grains are light, as fast as
+// the drag of the water that it pushes aside allows: the superficial velocity of this is that of
+// the plug, k (rho_s/rho_f - 1) (1 - n).
 SERIAL_TEST(Plug, SinksAsTheWaterLetsIt)
 {
   const double k = 5.0e-3;
@@ -714,8 +722,8 @@ SERIAL_TEST(Plug, SlowedByTheTransferIsTold)
   EXPECT_EQ(told(1.0e-3, ""), 0u);
 }
 
-// A pond sinks into a dry bed. Behind a front without suction pores are full: n dL/dt = k (H - n L + L)/L with the depth H
-// of the pond at first, and L of the front.
+// A pond sinks into a dry bed. Behind a front without suction pores are full: n dL/dt = k (H - n L
+// + L)/L with the depth H of the pond at first, and L of the front.
 SERIAL_TEST(Pond, SinksIntoADryBed)
 {
   const double k = 0.02, deep = 0.3, end = 3.0;
@@ -804,8 +812,8 @@ TEST(Slump, IsTheSameAcrossPeriodicFaces)
   EXPECT_NEAR(inside.fix("mix")->compute_scalar(), across.fix("mix")->compute_scalar(), 1.0e-9);
 }
 
-// While soil and water are apart, nodes are those of fields without a mixture; a block falls until it is in the water. The
-// ledger has long records all the time
+// While soil and water are apart, nodes are those of fields without a mixture; a block falls until
+// it is in the water. The ledger has long records all the time
 TEST(Apart, CostsNothingAndChangesNothing)
 {
   const std::string fields = "fix s soil mpm 1.0\nfix w water mpm 1.0\n";
@@ -880,9 +888,9 @@ SERIAL_TEST(Units, OfTheViscosityAreThoseOfPressure)
   EXPECT_NEAR(run.fix_vector("mix", 6)[0] / given, 1.0, 1e-9);
 }
 
-// Soil in half of a periodic box full of water, whose pressure is not uniform: the soil gets the share of the volume of its
-// grains of the difference between its ends, and energy is kept, where mass velocity^2 is no energy and pressure times
-// volume neither.
+// Soil in half of a periodic box full of water, whose pressure is not uniform: the soil gets the
+// share of the volume of its grains of the difference between its ends, and energy is kept, where
+// mass velocity^2 is no energy and pressure times volume neither.
 SERIAL_TEST(Units, OfForcesAndEnergy)
 {
   for (const std::string drag : {"none", "darcy 2.0"}) {
@@ -919,7 +927,8 @@ SERIAL_TEST(Units, OfForcesAndEnergy)
   }
 }
 
-// What limits the time step is named: the fastest of all points, here one of water that is compressed.
+// What limits the time step is named: the fastest of all points, here one of water that is
+// compressed.
 TEST(TimeStep, IsThatOfTheFastestPoint)
 {
   for (const int fastest : {70, 84, 120}) {
@@ -959,8 +968,8 @@ SERIAL_TEST(Share, IsNoOverlapWithTheSoilAlone)
                "refuses overlapping bodies: 60");
 }
 
-// water that has another share of its places than the pores have: too much of it is told. Water above the bed, or beside it, and places of points
-// by chance are no reason
+// water that has another share of its places than the pores have: too much of it is told. Water
+// above the bed, or beside it, and places of points by chance are no reason
 SERIAL_TEST(Share, ThatIsNotThePorosityIsTold)
 {
   const auto told = [](const std::string &scene, const char *share, double height) {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -33,8 +33,9 @@ SERIAL_TEST(Consolidation, Terzaghi)
   }
 }
 
-// Terzaghi's equation has no inertia and small strains: with soil and load that are light, pressures are of an order above one. (With 2 g/cm^3 the inertia
-// of the column shifts them by 0.05 % of the load, which no lattice takes away)
+// Terzaghi's equation has no inertia and small strains: with soil and load that are light,
+// pressures are of an order above one. (With 2 g/cm^3 the inertia of the column shifts them by 0.05
+// % of the load, which no lattice takes away)
 SERIAL_TEST(Consolidation, Converges)
 {
   struct Surface {
@@ -51,8 +52,9 @@ SERIAL_TEST(Consolidation, Converges)
   }
 }
 
-// A pressure with a wave of 20 cells, in soil as stiff as its water, which does not flow: what is left where the soil bears its slope stays for
-// 4000 steps. Relax, or every, would take 0.056 (k h)^4 of it again and again
+// A pressure with a wave of 20 cells, in soil as stiff as its water, which does not flow: what is
+// left where the soil bears its slope stays for 4000 steps. Relax, or every, would take 0.056 (k
+// h)^4 of it again and again
 SERIAL_TEST(Relax, KeepsSmoothPressures)
 {
   constexpr double STIFF = 100.0 * MODULUS, WATER = 4.0e8;
@@ -89,8 +91,8 @@ SERIAL_TEST(Undrained, PressureIsEven)
 
 namespace {
 
-/** A block of stiff soil of 1 m, a cell of 0.1 m from the sides of its box or between them, that loses water through
- *  faces; pressures at first are anything up to 1e4. */
+/** A block of stiff soil of 1 m, a cell of 0.1 m from the sides of its box or between them, that
+ *  loses water through faces; pressures at first are anything up to 1e4. */
 std::string leaking(const std::string &box, double spacing, double origin, const std::string &faces,
                     double k)
 {
@@ -119,8 +121,8 @@ const double NEVER_ABOVE = 1e4 * (1.0 + 2.0 * 2.2e7 / 0.4 / (1e3 * MODULUS));
 
 }    // namespace
 
-// Nodes beside a body have next to nothing of it where points are in the middle of cells: a side that moves through
-// cells, or is there by the place of nodes or with one point for each cell
+// Nodes beside a body have next to nothing of it where points are in the middle of cells: a side
+// that moves through cells, or is there by the place of nodes or with one point for each cell
 SERIAL_TEST(Surface, NextToASide)
 {
   for (const double k : {1e-3, 1e-2, 1e-1}) {
@@ -161,8 +163,8 @@ SERIAL_TEST(Surface, NextToASide)
 
 namespace {
 
-/** Water that has come into soil below a free surface with this slope, over the flux times area and time; above the height bottom
- *  if this is not 0, with a surface there, too. */
+/** Water that has come into soil below a free surface with this slope, over the flux times area and
+ *  time; above the height bottom if this is not 0, with a surface there, too. */
 double came_in(double degrees, double h, double origin, double bottom = 0.0)
 {
   const double d = 0.5 * h, slope = degrees * PI / 180.0, surfaces = bottom > 0.0 ? 2.0 : 1.0;
@@ -182,7 +184,8 @@ double came_in(double degrees, double h, double origin, double bottom = 0.0)
 
 }    // namespace
 
-// The water of a flux is its area times that of the free surface, which was up to 9 % too small, also with small cells
+// The water of a flux is its area times that of the free surface, which was up to 9 % too small,
+// also with small cells
 SERIAL_TEST(Surface, AreaOfAFlux)
 {
   for (const double origin : {0.0, 0.03, 0.07}) {
@@ -198,7 +201,8 @@ SERIAL_TEST(Surface, AreaOfAFlux)
   }
 }
 
-// Water through a face of the box is the flux times the area of the soil there, wherever nodes are: up to 1.9 % were missing
+// Water through a face of the box is the flux times the area of the soil there, wherever nodes are:
+// up to 1.9 % were missing
 SERIAL_TEST(Surface, AreaOfAFace)
 {
   for (const char *shape : {"quadratic", "cubic"})
@@ -231,9 +235,9 @@ TEST(Water, IsKept)
   expect_water_is_kept_by("kozeny 1e-3", "");
 }
 
-// Consolidation by half of the modulus, Kirchhoff stress logarithmic in the stretch, permeability with its square,
-// T = 0.2: table of the benchmark, the row of the logarithmic law (hencky) for a linear relation of stress and
-// logarithmic strain; the points cross up to 4 cells
+// Consolidation by half of the modulus, Kirchhoff stress logarithmic in the stretch, permeability
+// with its square, T = 0.2: table of the benchmark, the row of the logarithmic law (hencky) for a
+// linear relation of stress and logarithmic strain; the points cross up to 4 cells
 SERIAL_TEST(LargeStrain, Consolidation)
 {
   const int n = 20;
@@ -256,8 +260,8 @@ SERIAL_TEST(LargeStrain, Consolidation)
               0.02);
 }
 
-// A column that vibrates between closed ends: frequency and damping of the equations without the inertia of the
-// water's own motion, s^3 + d s^2 + (a + b) s + d a = 0
+// A column that vibrates between closed ends: frequency and damping of the equations without the
+// inertia of the water's own motion, s^3 + d s^2 + (a + b) s + d a = 0
 SERIAL_TEST(Modes, FrequencyAndDamping)
 {
   for (const double Kf : {2.2e8, 2.2e9}) {
@@ -317,7 +321,8 @@ SERIAL_TEST(Energy, Wave)
   EXPECT_NEAR(measured("residual", run.compute_vector()[10] / before), 0.0, 1e-12);
 }
 
-// flow through a column under its weight, up and down: flux, effective stress, and no gain of energy
+// flow through a column under its weight, up and down: flux, effective stress, and no gain of
+// energy
 SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
 {
   for (const double i : {0.5, 0.9, -0.5}) {
@@ -326,8 +331,9 @@ SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
   }
 }
 
-// Sand without cohesion lifts as a plug above the critical gradient, 0.99, as fast as water comes in below it: by the head above the
-// critical one over half a node spacing, where the lowest soil is loose and as permeable as before
+// Sand without cohesion lifts as a plug above the critical gradient, 0.99, as fast as water comes
+// in below it: by the head above the critical one over half a node spacing, where the lowest soil
+// is loose and as permeable as before
 SERIAL_TEST(Flow, LiftsAboveTheCriticalGradient)
 {
   const auto rate = [](double i) {
@@ -370,8 +376,9 @@ SERIAL_TEST(Walls, ThatSeparate)
 
 namespace {
 
-/** A column of 1 m with 10 cells above a floor, which a wall of this kind holds, under its weight; water has the
- *  pressure of rest and this gradient more, and leaves at the top. offset: of the floor from nodes, in cells. */
+/** A column of 1 m with 10 cells above a floor, which a wall of this kind holds, under its weight;
+ *  water has the pressure of rest and this gradient more, and leaves at the top. offset: of the
+ *  floor from nodes, in cells. */
 std::string above_floor(const std::string &wall, double gradient, double offset,
                         const std::string &material, const std::string &axes)
 {
@@ -394,8 +401,8 @@ double mean_velocity(Scene &run, int d)
 
 }    // namespace
 
-// friction of walls is that of grains: a saturated column slides on its floor as one of its submerged
-// weight
+// friction of walls is that of grains: a saturated column slides on its floor as one of its
+// submerged weight
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
 {
   const double slower = 0.3 * 9.81 * 990.0 / 1990.0;
@@ -420,9 +427,8 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
   }
 }
 
-// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the critical
-// gradient
-// is (G_s - 1)(1 - n) = 0.99
+// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the
+// critical gradient is (G_s - 1)(1 - n) = 0.99
 SERIAL_TEST(Walls, HeaveAtTheCriticalGradient)
 {
   for (const double offset : {0.0, 0.3})
@@ -479,7 +485,8 @@ SERIAL_TEST(TimeStep, IsUndrained)
   EXPECT_NEAR(biot.stable_dt() / (0.1 / std::sqrt((MODULUS + 0.64 / storage) / 2002.0)), 1.0, 1e-6);
 }
 
-// units in which mass, energy, and pressure do not fit together: the period of a wave, and water at rest
+// units in which mass, energy, and pressure do not fit together: the period of a wave, and water at
+// rest
 SERIAL_TEST(Units, Metal)
 {
   const double mvv2e = 1.0364269e-4, nktv2p = 1.6021765e6, h = 5.0;
@@ -512,7 +519,8 @@ SERIAL_TEST(Units, Metal)
               0.0, 1e-9);
 }
 
-// friction by the effective stress in these units and three dimensions, with a floor in a plane of nodes or not
+// friction by the effective stress in these units and three dimensions, with a floor in a plane of
+// nodes or not
 SERIAL_TEST(Units, FrictionInMetal)
 {
   for (const double origin : {0.0, 1.5}) {
@@ -553,8 +561,8 @@ SERIAL_TEST(Consolidation, InThreeDimensions)
   }
 }
 
-// With other physics, which might look at the points before they move, the gradients of the motion are found apart
-// from it: a fix mpm/heat without points that conduct makes no other difference
+// With other physics, which might look at the points before they move, the gradients of the motion
+// are found apart from it: a fix mpm/heat without points that conduct makes no other difference
 TEST(Motion, IsTheSameWithOtherPhysics)
 {
   const auto scene = between_walls(blocks("free pressure 0 ylo flux 0.01 initial v_p")) + PORE;
@@ -619,8 +627,8 @@ TEST(Restart, BeforeTheFirstRun)
   }
 }
 
-// the time step knows from the first one on what flows through the surface and by a formula, and in later runs
-// what it was
+// the time step knows from the first one on what flows through the surface and by a formula, and in
+// later runs what it was
 TEST(TimeStep, KnowsTheFlowAtOnce)
 {
   const auto scene = [](const std::string &law, const std::string &more, const char *fraction) {
@@ -647,7 +655,8 @@ TEST(TimeStep, KnowsTheFlowAtOnce)
   EXPECT_LT(ranks.difference(), 1e-11);
 }
 
-// a body without water has no part in it, and the point that limits the time step is one of the soil
+// a body without water has no part in it, and the point that limits the time step is one of the
+// soil
 SERIAL_TEST(DryField, PaysNothing)
 {
   Scene run(
@@ -693,7 +702,8 @@ std::string ground(int n, const std::string &water, const std::string &material,
 
 }    // namespace
 
-// level ground of 20 cells is at rest on nodes wherever these are, with stresses that are the weight above
+// level ground of 20 cells is at rest on nodes wherever these are, with stresses that are the
+// weight above
 SERIAL_TEST(Geostatic, StaysAtRest)
 {
   const int n = 20;
@@ -728,7 +738,8 @@ SERIAL_TEST(Geostatic, StaysAtRest)
     }
 }
 
-// laws for soils keep the elastic strain: sand without cohesion, and clay with a modulus that depends on the pressure
+// laws for soils keep the elastic strain: sand without cohesion, and clay with a modulus that
+// depends on the pressure
 SERIAL_TEST(Geostatic, Soils)
 {
   for (const char *law : {"mohr/coulomb 1e7 0.3 35 0", "drucker/prager 1e7 0.3 35",
@@ -751,7 +762,8 @@ SERIAL_TEST(Geostatic, Soils)
   expect_error(loose, "K0 within its yield surface");
 }
 
-// two soils, grains that are not rigid, a table below the surface, weight to the other side, and three dimensions
+// two soils, grains that are not rigid, a table below the surface, weight to the other side, and
+// three dimensions
 SERIAL_TEST(Geostatic, LayersInThreeDimensions)
 {
   Scene run(space("si", "p p f", "0 0.4 0 0.4 0 1.15", 2, 0.03) +

@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 600
 
-// Fix mpm/pore: consolidation with solutions, in which what the soil does changes the pressure of the water elsewhere.
-// The soil has modulus, density, and size 1, and a permeability with which consolidation is slow next to waves.
+// Fix mpm/pore: consolidation with solutions, in which what the soil does changes the pressure of
+// the water elsewhere. The soil has modulus, density, and size 1, and a permeability with which
+// consolidation is slow next to waves.
 
 #include "pore/pore_testing.h"
 
@@ -22,8 +23,8 @@ double young(double nu)
   return (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu);
 }
 
-/** A soil that consolidates as slowly as waves cross it in a part 1/slow of the time, with a water that is so many
- *  times as stiff; its motion is damped. */
+/** A soil that consolidates as slowly as waves cross it in a part 1/slow of the time, with a water
+ *  that is so many times as stiff; its motion is damped. */
 struct Clay {
   double nu, stiff, slow;
 
@@ -69,9 +70,10 @@ struct At {
 
 }    // namespace
 
-// Mandel: a strip between rigid smooth plates which are pressed together, drained at its sides. The pressure in its
-// middle rises first, as the sides become stiffer there. A quarter of the strip; the plate has no mass, but a damper:
-// its velocity is the force that is missing over the resistance of the damper
+// Mandel: a strip between rigid smooth plates which are pressed together, drained at its sides. The
+// pressure in its middle rises first, as the sides become stiffer there. A quarter of the strip;
+// the plate has no mass, but a damper: its velocity is the force that is missing over the
+// resistance of the damper
 struct Strip {
   double nu, peak;
   std::vector<At> decay;
@@ -99,7 +101,8 @@ PARAMETER_TEST(
       "fix plate all mpm/boundary yhi slip velocity 0 v_v 0\n" +
       clay.water("xhi pressure 0" + strip.more) + clay.damping(0.25 * h * h));
   Water water(run);
-  // undrained, the pressure is that of water and soil under F (Skempton's coefficient, undrained Poisson's number)
+  // undrained, the pressure is that of water and soil under F (Skempton's coefficient, undrained
+  // Poisson's number)
   const double Ku = clay.bulk() + clay.stiff, B = clay.stiff / Ku,
                nu_u = (3.0 * Ku - 2.0 * clay.shear()) / (2.0 * (3.0 * Ku + clay.shear()));
   const double p0 = F * B * (1.0 + nu_u) / 3.0;
@@ -116,9 +119,10 @@ PARAMETER_TEST(
   EXPECT_NEAR(measured("force on the plate", run.fix_vector("plate", 2)[1] / F), 1.0, 0.002);
 }
 
-// Cryer: a sphere under pressure from all sides, drained at its curved surface. Less the state in which all pressures
-// are the same, and nothing flows or deforms, this is a sphere without load around which the pressure of the water is
-// lowered: first it rises in the middle. An eighth of the sphere
+// Cryer: a sphere under pressure from all sides, drained at its curved surface. Less the state in
+// which all pressures are the same, and nothing flows or deforms, this is a sphere without load
+// around which the pressure of the water is lowered: first it rises in the middle. An eighth of the
+// sphere
 PARAMETER_TEST(Cryer, PressureRisesFirst, const char *, Values("", " every auto"))
 {
   LONG_AFTER(1);
@@ -145,8 +149,8 @@ PARAMETER_TEST(Cryer, PressureRisesFirst, const char *, Values("", " every auto"
 
 namespace {
 
-/** A column of large strain: stress of the soil over its modulus, compression positive, and permeability over that of
- *  the start, both at a stretch. */
+/** A column of large strain: stress of the soil over its modulus, compression positive, and
+ *  permeability over that of the start, both at a stretch. */
 struct Large {
   const char *name;
   double q;    // load
@@ -161,10 +165,11 @@ struct Large {
   std::string shape = "quadratic";
 };
 
-/** Settlement and pressure at the base by finite volumes, at times in ascending order: d(l)/dt + (l n/K) dp/dt =
- *  d/dX(k/l dp/dX) with the stretch l, the volume l n = l - (1 - n0) of water with the bulk modulus K (infinite with
- *  water = 0), and p = q - stress. Loaded without time for flow at first, or with a load that grows in a time, ramp, as that of
- *  load(), and times from the middle of this on. */
+/** Settlement and pressure at the base by finite volumes, at times in ascending order: d(l)/dt + (l
+ *  n/K) dp/dt = d/dX(k/l dp/dX) with the stretch l, the volume l n = l - (1 - n0) of water with the
+ *  bulk modulus K (infinite with water = 0), and p = q - stress. Loaded without time for flow at
+ *  first, or with a load that grows in a time, ramp, as that of load(), and times from the middle
+ *  of this on. */
 std::vector<std::array<double, 3>> finite_volumes(const Large &column, double water,
                                                   double ramp = 0.0)
 {
@@ -267,11 +272,13 @@ void PrintTo(const Large &column, std::ostream *out)
   *out << column.name;
 }
 
-// Consolidation by loads of 0.2, 0.5, and 1 modulus of the soil, against finite volumes with the same water, and load, which grows in a short
-// time: both shift what comes late, where the pressure at the base is less than one percent of the load, by up to 1 %, and so
-// does the inertia of soil of more weight. Rows of the table of the benchmark, with water that does not give way and a load at
-// once, check the volumes. The load is on the two upper rows of points in such parts that its place is the surface. The
-// permeability of Kozeny and Carman falls to 1/10 within a cell of the surface
+// Consolidation by loads of 0.2, 0.5, and 1 modulus of the soil, against finite volumes with the
+// same water, and load, which grows in a short time: both shift what comes late, where the pressure
+// at the base is less than one percent of the load, by up to 1 %, and so does the inertia of soil
+// of more weight. Rows of the table of the benchmark, with water that does not give way and a load
+// at once, check the volumes. The load is on the two upper rows of points in such parts that its
+// place is the surface. The permeability of Kozeny and Carman falls to 1/10 within a cell of the
+// surface
 PARAMETER_TEST(
     LargeStrain, Consolidates, Large,
     Values(
@@ -359,7 +366,8 @@ PARAMETER_TEST(
     }
     const auto name = strprintf("T %g, over the reference: ", at[0]);
     EXPECT_NEAR(measured(name + "settlement", (1.0 - volume * n / 4.0) / at[1]), 1.0, 0.02);
-    // of the last part of the load, quadratic functions do not tell where the surface is between nodes
+    // of the last part of the load, quadratic functions do not tell where the surface is between
+    // nodes
     const double base = water.mean(0.0, 0.5 / n) / soil.q;
     measured(name + "pressure at the base", base / at[2]);
     EXPECT_NEAR(base, at[2], 0.02 * std::max(at[2], soil.shape == "cubic" ? 0.0 : 0.004));
@@ -368,8 +376,8 @@ PARAMETER_TEST(
 
 namespace {
 
-/** Pressure at a depth over that at the base at first, and degree of consolidation, where the weight of the soil is all
- *  on its water first. */
+/** Pressure at a depth over that at the base at first, and degree of consolidation, where the
+ *  weight of the soil is all on its water first. */
 double of_weight(double z, double T)
 {
   double sum = 0.0;
@@ -395,8 +403,8 @@ double volumes(Scene &run, double Kf, std::vector<double> &storage)
 
 }    // namespace
 
-// A column that consolidates under its own weight. The water that has left is the settlement, and what the
-// water in the pores gets of its volume when its pressure falls
+// A column that consolidates under its own weight. The water that has left is the settlement, and
+// what the water in the pores gets of its volume when its pressure falls
 SERIAL_TEST(SelfWeight, Consolidates)
 {
   LONG_CASE();

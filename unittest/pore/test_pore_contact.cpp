@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi
 // mpi: 1 4
 // timeout: 300
 
-// Soil with pore water in contact with other bodies (fix mpm/contact): grains and water share what is between them.
+// Soil with pore water in contact with other bodies (fix mpm/contact): grains and water share what
+// is between them.
 
 #include "pore/pore_testing.h"
 
@@ -15,9 +16,10 @@ namespace {
 
 constexpr double SUBMERGED = 990.0 / 1990.0;    // weight in water over that of soil and water
 
-/** A layer of saturated soil, 1 m high with 10 cells, periodic along x, in a box from y = -0.4 on; the water has the pressure of
- *  rest across the layer, and seeps along it. slope: tangent of the angle to which gravity is inclined; offset: of y = 0 from
- *  nodes, in cells; dim: 2, or 3, where y is up, too. */
+/** A layer of saturated soil, 1 m high with 10 cells, periodic along x, in a box from y = -0.4 on;
+ *  the water has the pressure of rest across the layer, and seeps along it. slope: tangent of the
+ *  angle to which gravity is inclined; offset: of y = 0 from nodes, in cells; dim: 2, or 3, where y
+ *  is up, too. */
 std::string layer(double slope, double offset, int dim)
 {
   const double cosine = 1.0 / std::sqrt(1.0 + slope * slope);
@@ -65,9 +67,10 @@ Motion of_soil(Scene &run)
   return m;
 }
 
-/** Friction of the layer when it has come to rest on what is below, over that of its grains: what its weight is above the pressure of the
- *  water at its lower side, which may be a part of a cell off the surface of the other body. The pressure is zero at the upper end of
- *  the soil, which may be as much below the face of the box. */
+/** Friction of the layer when it has come to rest on what is below, over that of its grains: what
+ *  its weight is above the pressure of the water at its lower side, which may be a part of a cell
+ *  off the surface of the other body. The pressure is zero at the upper end of the soil, which may
+ *  be as much below the face of the box. */
 double friction(Scene &run, double slope, double coefficient)
 {
   run_to(run, 0.6);
@@ -83,7 +86,8 @@ double friction(Scene &run, double slope, double coefficient)
 
 }    // namespace
 
-// an infinite slope with seepage along it: friction is that of the submerged weight, not half of the total one
+// an infinite slope with seepage along it: friction is that of the submerged weight, not half of
+// the total one
 SERIAL_TEST(Contact, FrictionIsThatOfGrains)
 {
   for (const double offset : {0.0, 0.3}) {
@@ -100,7 +104,8 @@ SERIAL_TEST(Contact, FrictionIsThatOfGrains)
   EXPECT_NEAR(measured("3d", friction(run, 0.35, 0.5)), 1.0, 0.005);
 }
 
-// below the angle of which the tangent is friction times the share of the submerged weight the layer is held
+// below the angle of which the tangent is friction times the share of the submerged weight the
+// layer is held
 SERIAL_TEST(Contact, SlopeHolds)
 {
   Scene run(on_body("coulomb 0.5", 0.9 * 0.5 * SUBMERGED, 0.0));
@@ -110,8 +115,8 @@ SERIAL_TEST(Contact, SlopeHolds)
               0.0, 0.005);
 }
 
-// where water presses with more than the weight of the layer, grains leave what is below, and do not hold the water back: all of its
-// pressure acts on both
+// where water presses with more than the weight of the layer, grains leave what is below, and do
+// not hold the water back: all of its pressure acts on both
 SERIAL_TEST(Contact, WaterPartsBodies)
 {
   for (const double offset : {0.0, 0.3})
@@ -129,8 +134,9 @@ SERIAL_TEST(Contact, WaterPartsBodies)
     }
 }
 
-// two layers with water of different pressure: between them is the mean of both, less than which no node bears. In the row of nodes below
-// the interface, which has an eighth of its area, the lower one follows the pressure of the upper one
+// two layers with water of different pressure: between them is the mean of both, less than which no
+// node bears. In the row of nodes below the interface, which has an eighth of its area, the lower
+// one follows the pressure of the upper one
 SERIAL_TEST(Contact, OfTwoSoils)
 {
   Scene run(replaced(replaced(on_body("coulomb 0.5", 0.0, 0.0), "density 2500", "density 1990"),
@@ -147,7 +153,8 @@ SERIAL_TEST(Contact, OfTwoSoils)
   EXPECT_LT(force, 1.0 + 0.125 * (2.2 - mean) / mean);
 }
 
-// water at nodes that are not in contact, though bodies nearly fill them: the left half of the lower one is a fourteenth of a cell off
+// water at nodes that are not in contact, though bodies nearly fill them: the left half of the
+// lower one is a fourteenth of a cell off
 SERIAL_TEST(Contact, MissedWaterIsTold)
 {
   for (const bool off : {false, true})

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input ranks
 // mpi: 1 4
@@ -11,7 +11,8 @@
 
 using namespace MPM_TEST;
 
-// Terzaghi's column at T = 0.2, drained at a face of the box or at a free surface, with flows far above the explicit limit, too
+// Terzaghi's column at T = 0.2, drained at a face of the box or at a free surface, with flows far
+// above the explicit limit, too
 SERIAL_TEST(Consolidation, Terzaghi)
 {
   for (const double Kf : {2.2e8, 2.2e9})
@@ -34,8 +35,8 @@ SERIAL_TEST(Consolidation, Converges)
   EXPECT_GT(measured("order", std::log2(rms[0] / rms[1])), 0.9);
 }
 
-// Flow that starts and stops makes waves: with more than some node spacings between two flows these would be 2 to 19 % of the load, and
-// however many steps are asked for, there are no more
+// Flow that starts and stops makes waves: with more than some node spacings between two flows these
+// would be 2 to 19 % of the load, and however many steps are asked for, there are no more
 SERIAL_TEST(Undrained, PressureIsEven)
 {
   for (const double Kf : {2.2e8, 2.2e9})
@@ -43,8 +44,9 @@ SERIAL_TEST(Undrained, PressureIsEven)
       EXPECT_LT(scatter_of_pressure(Kf, k, "every 20"), 0.01);
 }
 
-// Points that are a node spacing apart have pressures of their own that are stiffer than those of nodes: waits are shorter then, or noise
-// grows without end. So with points that are close along one axis alone, whose volume is that of close points
+// Points that are a node spacing apart have pressures of their own that are stiffer than those of
+// nodes: waits are shorter then, or noise grows without end. So with points that are close along
+// one axis alone, whose volume is that of close points
 SERIAL_TEST(Waits, AreShortWithFewPoints)
 {
   const struct {
@@ -112,8 +114,9 @@ TEST(Auto, WaitsForTheFlow)
   }
 }
 
-// Without every, water waits where it can: not while a pressure changes within thin layers, where it flows as with every 1, to the last bit, and not with free
-// surfaces or what varies from step to step
+// Without every, water waits where it can: not while a pressure changes within thin layers, where
+// it flows as with every 1, to the last bit, and not with free surfaces or what varies from step to
+// step
 TEST(Default, WaitsWhereItCan)
 {
   const auto pores = [](double k, const std::string &more, int steps) {
@@ -134,7 +137,8 @@ TEST(Default, WaitsWhereItCan)
     EXPECT_EQ(pores(1e-5, even + in_each, 40), pores(1e-5, even + in_each + "every 1", 40));
 }
 
-// flows beyond one explicit limit through a free surface are told once; not shorter ones, nor those through a face, nor with auto
+// flows beyond one explicit limit through a free surface are told once; not shorter ones, nor those
+// through a face, nor with auto
 SERIAL_TEST(Told, LongFlowThroughAFreeSurface)
 {
   const auto told = [](const char *k, const char *options) {
@@ -183,7 +187,8 @@ SERIAL_TEST(LargeStrain, Consolidation)
               0.02);
 }
 
-// between two flows water stays where it is, and what compresses a point raises its pressure at once
+// between two flows water stays where it is, and what compresses a point raises its pressure at
+// once
 TEST(Water, WaitsForTheFlow)
 {
   Scene run(column(10, "2.2e8 1000 9810 soil m 0.4 constant 1e-6 ylo flux 1e-6 every 4", SOIL) +
@@ -234,8 +239,9 @@ TEST(Restart, Continues)
     expect_continues(blocks(std::string("free pressure 0 initial v_p every ") + every), OF_BLOCKS);
 }
 
-// What follows on a file that was written between two flows may have other conditions, with which water flows in each step, or be implicit: points have
-// the pressure that the motion has made since the last flow
+// What follows on a file that was written between two flows may have other conditions, with which
+// water flows in each step, or be implicit: points have the pressure that the motion has made since
+// the last flow
 TEST(Restart, GoesOnWithOtherConditions)
 {
   const auto fixes = [](const std::string &more) {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -56,7 +56,8 @@ SERIAL_TEST(Steady, IsTheRoot)
       }
 }
 
-// a soil that can dry and touches no face changes nothing; at the sides of a body a part of the area is missing
+// a soil that can dry and touches no face changes nothing; at the sides of a body a part of the
+// area is missing
 SERIAL_TEST(Steady, BesideSoilThatDries)
 {
   for (const double b : {1e8, 1e10}) {

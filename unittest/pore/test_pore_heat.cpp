@@ -1,12 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
 // timeout: 300
 
-// Soil with pore water that is heated: grains and water expand (fix mpm/pore ... expansion). And material without water, through
-// which none may leak.
+// Soil with pore water that is heated: grains and water expand (fix mpm/pore ... expansion). And
+// material without water, through which none may leak.
 
 #include "pore/pore_testing.h"
 
@@ -49,7 +49,8 @@ double pressure(const std::string &scene)
 
 }    // namespace
 
-// no room to expand: water and grains press on each other; a body that is free to expand: what water takes more than pores do
+// no room to expand: water and grains press on each other; a body that is free to expand: what
+// water takes more than pores do
 SERIAL_TEST(Undrained, PressureByHeat)
 {
   for (const char *formulation : {"", " formulation u-v-p"}) {
@@ -85,7 +86,8 @@ TEST(Heated, RanksAndRestart)
   expect_continues(scene, variables);
 }
 
-// a wall without water between two soils, or one that does not conduct: nodes of one that is thin belong to both
+// a wall without water between two soils, or one that does not conduct: nodes of one that is thin
+// belong to both
 TEST(Wall, LeaksAreTold)
 {
   for (const bool heat : {false, true})

@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 400
 
-// Fix mpm/pore with formulation u-v-p: pore water with inertia of its own in the points of the soil.
+// Fix mpm/pore with formulation u-v-p: pore water with inertia of its own in the points of the
+// soil.
 
 #include "pore/pore_mode_testing.h"
 
@@ -15,7 +16,8 @@ namespace {
 
 const std::string MOVES = "formulation u-v-p ";
 
-/** Frequency and decay of the fast mode in a signal that has a slow one, of a known root, too: the best fit of both. */
+/** Frequency and decay of the fast mode in a signal that has a slow one, of a known root, too: the
+ *  best fit of both. */
 std::array<double, 2> fast_mode(const std::vector<double> &t, const std::vector<double> &y,
                                 std::array<double, 2> fast, const std::array<double, 2> &slow)
 {
@@ -71,7 +73,8 @@ std::array<double, 2> fast_mode(const std::vector<double> &t, const std::vector<
 
 }    // namespace
 
-// The roots of u-v-p for the fast wave of a sealed column, as tabulated; the slow motion has its own ones
+// The roots of u-v-p for the fast wave of a sealed column, as tabulated; the slow motion has its
+// own ones
 struct Roots {
   Mode mode;
   std::array<double, 2> fast, slow;    // frequency, decay
@@ -244,8 +247,9 @@ SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
   }
 }
 
-// Soil and water together keep their momentum: two blocks collide, and water flows in them. What water that goes from point to
-// point makes of it, which takes the velocity of where it comes to, is not part of the equations, and is counted here
+// Soil and water together keep their momentum: two blocks collide, and water flows in them. What
+// water that goes from point to point makes of it, which takes the velocity of where it comes to,
+// is not part of the equations, and is counted here
 SERIAL_TEST(Momentum, IsKept)
 {
   Scene run(blocks("initial v_p " + MOVES) + "compute w all mpm/atom flow_x flow_y\n");
@@ -277,7 +281,8 @@ SERIAL_TEST(Momentum, IsKept)
   EXPECT_LT(measured("change", most), 1e-11);
 }
 
-// the time step is that of a wave in which water and soil move without drag, and it is stable just below
+// the time step is that of a wave in which water and soil move without drag, and it is stable just
+// below
 SERIAL_TEST(TimeStep, IsThatOfTheFastWave)
 {
   const double Kf = 2.2e8, E = MODULUS, S = N / Kf, rho = 1990.0, rhof = 1000.0;

@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
 // timeout: 300
 
-// Rigid bodies (fix mpm/rigid) on soil with pore water: they bear the total stress, of grains and water.
+// Rigid bodies (fix mpm/rigid) on soil with pore water: they bear the total stress, of grains and
+// water.
 
 #include "mesh/stl_testing.h"
 #include "pore/pore_testing.h"
@@ -16,8 +17,8 @@ namespace {
 
 constexpr double AREA = 0.16;
 
-/** A column of saturated soil of 1 m and 10 cells, 4 cells wide and periodic, on a smooth floor below a plate whose lower side is
- *  at its top. offset: of the top from nodes, in cells. */
+/** A column of saturated soil of 1 m and 10 cells, 4 cells wide and periodic, on a smooth floor
+ *  below a plate whose lower side is at its top. offset: of the top from nodes, in cells. */
 std::string under_plate(const std::string &file, const std::string &water, const std::string &tool,
                         double offset)
 {
@@ -43,7 +44,8 @@ double share_of_water(double K)
 
 }    // namespace
 
-// undrained compression: the body bears the whole load, of which the water has what its stiffness is in that of both
+// undrained compression: the body bears the whole load, of which the water has what its stiffness
+// is in that of both
 SERIAL_TEST(Plate, BearsTheTotalStress)
 {
   const ScratchFile file("plate.stl", text_of(plate()));
@@ -101,7 +103,8 @@ double friction(const std::string &water, double offset)
   return along / down / 0.3;
 }
 
-// friction is that of grains: of the effective stress where the surface is closed, of all where it is open to air
+// friction is that of grains: of the effective stress where the surface is closed, of all where it
+// is open to air
 SERIAL_TEST(Plate, FrictionIsThatOfGrains)
 {
   for (const double K : {2.2e7, 2.2e8})

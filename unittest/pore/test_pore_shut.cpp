@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi
 // mpi: 1 4
@@ -14,7 +14,8 @@ using namespace MPM_TEST;
 
 namespace {
 
-/** A block between a floor and a lid that comes down with this speed; its grains have 0.6 of its volume. */
+/** A block between a floor and a lid that comes down with this speed; its grains have 0.6 of its
+ *  volume. */
 std::string pressed(const std::string &law, double speed)
 {
   return plane("si", "p f", "0 0.4 0 1", 1, 0.03) + "create_points 1 box spacing 0.05\n" +
@@ -26,7 +27,8 @@ std::string pressed(const std::string &law, double speed)
 
 }    // namespace
 
-// a warning tells of it once; nothing negative and no NaN comes out, and water that cannot leave is kept
+// a warning tells of it once; nothing negative and no NaN comes out, and water that cannot leave is
+// kept
 TEST(Shut, IsTold)
 {
   for (const char *law :

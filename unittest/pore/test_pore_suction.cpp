@@ -1,12 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 400
 
-// Fix mpm/pore in partly saturated soils: keyword retention, and water through surfaces with air outside.
-// Numbers by finite volumes are those of richards.py.
+// Fix mpm/pore in partly saturated soils: keyword retention, and water through surfaces with air
+// outside. Numbers by finite volumes are those of richards.py.
 
 #include "pore/pore_bodies_testing.h"
 
@@ -54,7 +54,8 @@ void run_to(Scene &run, double end, double share = 0.5)
   run.commands(strprintf("fix dt all mpm/dt %g until %.17g\nrun 10000000\n", share, end));
 }
 
-/** Volume of water of all points by their saturation and porosity, at the density that it has without pressure. */
+/** Volume of water of all points by their saturation and porosity, at the density that it has
+ *  without pressure. */
 double water_in_pores(Scene &run, double K)
 {
   const auto S = values(run, "saturation"), n = values(run, "porosity"), p = values(run, "pore");
@@ -64,8 +65,9 @@ double water_in_pores(Scene &run, double K)
   return sum;
 }
 
-/** Steady infiltration q0 and then q1, in units of the permeability, into a column of the height 1 above a water table: head at
- *  the height z and the time t (R. Srivastava, T.-C.J. Yeh, Water Resour. Res. 27 (1991) 753). range: of the water content. */
+/** Steady infiltration q0 and then q1, in units of the permeability, into a column of the height 1
+ *  above a water table: head at the height z and the time t (R. Srivastava, T.-C.J. Yeh, Water
+ *  Resour. Res. 27 (1991) 753). range: of the water content. */
 double infiltration(double alpha, double K, double range, double q0, double q1, double z, double t)
 {
   const double L = alpha, Z = alpha * z, T = alpha * K * t / range;
@@ -135,7 +137,8 @@ SERIAL_TEST(Retention, Functions)
   EXPECT_NEAR(state.relative, std::sqrt(s) * std::pow(1.0 - std::sqrt(1.0 - s * s), 2), 1e-14);
 }
 
-// Infiltration above a water table, Gardner's soil: the steady profile of 0.1 K stays, and becomes that of 0.9 K
+// Infiltration above a water table, Gardner's soil: the steady profile of 0.1 K stays, and becomes
+// that of 0.9 K
 SERIAL_TEST(Infiltration, SrivastavaAndYeh)
 {
   const double alpha = 4.0, K = 0.1, range = 0.34;
@@ -171,8 +174,9 @@ SERIAL_TEST(Infiltration, SrivastavaAndYeh)
   EXPECT_LT(rms[1], 0.6 * rms[0]);
 }
 
-// Infiltration into dry sand of New Mexico in a day (M.A. Celia, E.T. Bouloutas, R.L. Zarba, Water Resour. Res. 26 (1990) 1483), 1e5
-// times as fast: heads behind the front, its depth, and the water, which is that of the points by their saturation, too
+// Infiltration into dry sand of New Mexico in a day (M.A. Celia, E.T. Bouloutas, R.L. Zarba, Water
+// Resour. Res. 26 (1990) 1483), 1e5 times as fast: heads behind the front, its depth, and the
+// water, which is that of the points by their saturation, too
 SERIAL_TEST(Infiltration, IntoDrySand)
 {
   LONG_CASE();
@@ -284,7 +288,8 @@ SERIAL_TEST(Geostatic, SuctionAboveTheTable)
   EXPECT_LT(measured("with less suction, force over weight", fall(dry, dt)), 0.05);
 }
 
-// also where the suction of water at rest changes the saturation by orders of magnitude within a cell
+// also where the suction of water at rest changes the saturation by orders of magnitude within a
+// cell
 SERIAL_TEST(Geostatic, CapillaryFringeWithinACell)
 {
   Scene run(column(10,
@@ -294,8 +299,9 @@ SERIAL_TEST(Geostatic, CapillaryFringeWithinACell)
   EXPECT_LT(measured("velocity", fall(run, 200 * 4e-5)), 1e-9);
 }
 
-// friction of walls is that of grains: a block slides by its weight without what its water bears at the floor, where pores
-// are full with the saturation Ss, partly full, or full below a water table in the block
+// friction of walls is that of grains: a block slides by its weight without what its water bears at
+// the floor, where pores are full with the saturation Ss, partly full, or full below a water table
+// in the block
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
 {
   LONG_CASE();
@@ -342,7 +348,8 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
     }
 }
 
-// soil whose pores stay full is that without retention, to round-off: the compiler contracts the sums of the two differently
+// soil whose pores stay full is that without retention, to round-off: the compiler contracts the
+// sums of the two differently
 SERIAL_TEST(FullPores, AreAsWithoutRetention)
 {
   const auto scene = [](const char *dries) {
@@ -361,8 +368,9 @@ SERIAL_TEST(FullPores, AreAsWithoutRetention)
               1e-10);
 }
 
-// Rain of three times the permeability on dry soil: first all of it goes in, then what full pores let through. No water comes in
-// through a face with air outside, and what has come in leaves there when it is there
+// Rain of three times the permeability on dry soil: first all of it goes in, then what full pores
+// let through. No water comes in through a face with air outside, and what has come in leaves there
+// when it is there
 SERIAL_TEST(Surface, RainAndSeepage)
 {
   const double K = 0.1;
@@ -390,7 +398,8 @@ SERIAL_TEST(Surface, RainAndSeepage)
 
 namespace {
 
-/** A surface that stays full takes water into dry soil, from -10 m: 1 m with n cells. K: of the water. */
+/** A surface that stays full takes water into dry soil, from -10 m: 1 m with n cells. K: of the
+ *  water. */
 std::string absorbs(int n, double K, double end)
 {
   const double h = 1.0 / n;
@@ -409,8 +418,9 @@ std::string absorbs(int n, double K, double end)
 
 }    // namespace
 
-// Absorption into dry soil, whose water grows with the root of the time: 0.0386 m after 0.3 s, 0.0585 and 0.0494 with 10 and 20 finite
-// volumes. The front does not hold it back, also where the water is stiff
+// Absorption into dry soil, whose water grows with the root of the time: 0.0386 m after 0.3 s,
+// 0.0585 and 0.0494 with 10 and 20 finite volumes. The front does not hold it back, also where the
+// water is stiff
 SERIAL_TEST(Surface, FillsDrySoil)
 {
   LONG_CASE();
@@ -428,8 +438,8 @@ SERIAL_TEST(Surface, FillsDrySoil)
   }
 }
 
-// pressures of points that jump where the last pores fill are told, and water so stiff that its flow needs more stages than there
-// may be is refused
+// pressures of points that jump where the last pores fill are told, and water so stiff that its
+// flow needs more stages than there may be is refused
 SERIAL_TEST(Surface, StiffWater)
 {
   const char *const told = "use a smaller bulk modulus of the water, K, of some 8.8e+05";
@@ -493,7 +503,8 @@ TEST(Momentum, OfABodyThatMoves)
   for (int d = 1; d < 3; d++) EXPECT_NEAR(measured("momentum", after[d] / before[d]), 1.0, 1e-3);
 }
 
-// the ledger closes with suction in it, and the time step is that of the waves in soil with as much water
+// the ledger closes with suction in it, and the time step is that of the waves in soil with as much
+// water
 SERIAL_TEST(Ledger, Closes)
 {
   Scene run(column(20, std::string(SAND) + DRIES + "geostatic 0.5 0.4 yhi rain 1e-3",

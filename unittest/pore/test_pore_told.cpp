@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics input
 // timeout: 300
 
-// Fix mpm/pore: what it tells of input that is likely to be wrong, and what it must not take for wrong.
+// Fix mpm/pore: what it tells of input that is likely to be wrong, and what it must not take for
+// wrong.
 
 #include "pore/pore_testing.h"
 
@@ -12,7 +13,8 @@ using namespace MPM_TEST;
 
 namespace {
 
-/** A column with the pressure 1 kPa at first, which the load bears, and 300 Pa outside. options: of fix mpm; more: of fix mpm/pore. */
+/** A column with the pressure 1 kPa at first, which the load bears, and 300 Pa outside. options: of
+ *  fix mpm; more: of fix mpm/pore. */
 std::string jump(const std::string &options, const std::string &more)
 {
   return replaced(column(10,
@@ -26,8 +28,9 @@ std::string jump(const std::string &options, const std::string &more)
 
 }    // namespace
 
-// Water leaves with the pressure outside, however far that at the surface is from it: what is left of its energy is dissipated.
-// Where the pressure jumps at the surface both are far apart for a while with u-v-p, and the watch of energies called that numerical errors
+// Water leaves with the pressure outside, however far that at the surface is from it: what is left
+// of its energy is dissipated. Where the pressure jumps at the surface both are far apart for a
+// while with u-v-p, and the watch of energies called that numerical errors
 SERIAL_TEST(Energy, OfWaterThatLeaves)
 {
   for (const std::string formulation : {"formulation u-p", "formulation u-v-p"}) {
@@ -43,7 +46,8 @@ SERIAL_TEST(Energy, OfWaterThatLeaves)
   }
 }
 
-// With every K points take the same steps, as the load is constant. The surface was looked for before there were means of forces
+// With every K points take the same steps, as the load is constant. The surface was looked for
+// before there were means of forces
 SERIAL_TEST(Every, IsTheSame)
 {
   double mean[2], out[2];
@@ -59,7 +63,8 @@ SERIAL_TEST(Every, IsTheSame)
   EXPECT_NEAR(measured("water that left", out[1] / out[0]), 1.0, 1e-9);
 }
 
-// the ID of a material without points, and a density that grains cannot have: the ground would be dry, or too light
+// the ID of a material without points, and a density that grains cannot have: the ground would be
+// dry, or too light
 SERIAL_TEST(Soils, WithoutPointsOrTooLightAreTold)
 {
   const auto told = [](const char *soil, const char *density, const char *weight,
@@ -86,8 +91,8 @@ SERIAL_TEST(Soils, WithoutPointsOrTooLightAreTold)
   EXPECT_EQ(told("", "400", "", "WARNING: Fix mpm/pore"), 0u);
 }
 
-// grains that are softer than the soil that they make, which is the same as a coefficient of Biot below the porosity, and a coefficient that
-// is not that of both moduli
+// grains that are softer than the soil that they make, which is the same as a coefficient of Biot
+// below the porosity, and a coefficient that is not that of both moduli
 SERIAL_TEST(Grains, ThatDoNotGoWithTheirSoil)
 {
   // bulk modulus 1e10, porosity 0.2
@@ -114,8 +119,8 @@ SERIAL_TEST(Grains, ThatDoNotGoWithTheirSoil)
   }
 }
 
-// what relax, and every, take from smooth pressures while the flow takes next to nothing, in soil as stiff as its water; not so where water flows, or
-// with little relax, or before it counts
+// what relax, and every, take from smooth pressures while the flow takes next to nothing, in soil
+// as stiff as its water; not so where water flows, or with little relax, or before it counts
 SERIAL_TEST(Relax, ThatSmoothsIsTold)
 {
   const auto told = [](const char *k, const char *more, int steps) {
@@ -136,8 +141,10 @@ SERIAL_TEST(Relax, ThatSmoothsIsTold)
   EXPECT_EQ(told("constant 1e-3", "every auto", 2000), 0u);
 }
 
-// u-p leaves out the acceleration of the water: fast waves, and gravel under a load that comes at once, need u-v-p. Slow flow after such a load does
-// not, though it begins with waves, nor waves that water in fine soil goes with, nor ground at rest, where flow and accelerations are those of round-off
+// u-p leaves out the acceleration of the water: fast waves, and gravel under a load that comes at
+// once, need u-v-p. Slow flow after such a load does not, though it begins with waves, nor waves
+// that water in fine soil goes with, nor ground at rest, where flow and accelerations are those of
+// round-off
 SERIAL_TEST(Inertia, ThatCountsIsTold)
 {
   const auto told = [](const std::string &scene, const char *more) {

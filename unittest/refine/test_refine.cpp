@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -16,8 +16,8 @@ const char *const law = "fix m all mpm/material density 1 linear 1 0.25\n";
 
 }    // namespace
 
-// A velocity that is linear in space stays so at all kinds of rims, faces, edges, and corners: nothing but points between that move
-// apart changes it, and in the total frame nothing at all
+// A velocity that is linear in space stays so at all kinds of rims, faces, edges, and corners:
+// nothing but points between that move apart changes it, and in the total frame nothing at all
 struct Patch {
   int dim, levels;
   const char *shape;
@@ -51,8 +51,9 @@ PARAMETER_TEST(Velocity, StaysLinear, Patch,
   EXPECT_LT(measured("change of velocity", worst), 1e-13);
 }
 
-// Creeping flow: a cylinder of radius 1 in the middle of one of radius 4, half of it, that moves feels a drag of
-// 4 pi mu U/(ln 4 - 15/17) per length. Small cells around it find this better than large cells everywhere
+// Creeping flow: a cylinder of radius 1 in the middle of one of radius 4, half of it, that moves
+// feels a drag of 4 pi mu U/(ln 4 - 15/17) per length. Small cells around it find this better than
+// large cells everywhere
 SERIAL_TEST(Flow, AroundACylinder)
 {
   const double exact = 4.0 * PI / (log(4.0) - 15.0 / 17.0), U = 1e-3;
@@ -86,7 +87,8 @@ SERIAL_TEST(Flow, AroundACylinder)
   EXPECT_LT(std::fabs(error[1]), 0.5 * std::fabs(error[0]));
 }
 
-// Uniform pressure in a box full of points gives no force on any node with linear functions, and next to none with others
+// Uniform pressure in a box full of points gives no force on any node with linear functions, and
+// next to none with others
 PARAMETER_TEST(Pressure, IsInBalance, Patch,
                Values(Patch{2, 2, "linear"}, Patch{2, 3, "quadratic"}, Patch{3, 2, "quadratic"},
                       Patch{2, 2, "cubic"}))
@@ -103,13 +105,15 @@ PARAMETER_TEST(Pressure, IsInBalance, Patch,
   double worst = 0.0;
   for (const auto &point : run.gather())
     for (int d = 0; d < 3; d++) worst = std::max(worst, std::fabs(point.v[d]));
-  // products of a linear and a quadratic function along two axes have another integral by coarse points than by fine ones
+  // products of a linear and a quadratic function along two axes have another integral by coarse
+  // points than by fine ones
   EXPECT_LT(measured("velocity over that of pressure on a cell", worst / 0.001),
             p.shape == std::string("linear") ? 1e-12 : 1e-2);
 }
 
-// The finest points touch the coarsest ones, so that nodes between are tied to tied ones: linear velocities stay, also by their change
-// (aflip), which takes the old velocities of tied nodes, and uniform pressure gives no force
+// The finest points touch the coarsest ones, so that nodes between are tied to tied ones: linear
+// velocities stay, also by their change (aflip), which takes the old velocities of tied nodes, and
+// uniform pressure gives no force
 SERIAL_TEST(Skip, ALatticeBetweenIsLeftOut)
 {
   const std::vector<std::string> regions = {"block 0 12 0 11 INF INF", "block 3 10 3 9 INF INF",
@@ -143,7 +147,8 @@ SERIAL_TEST(Skip, ALatticeBetweenIsLeftOut)
   EXPECT_LT(measured("velocity over that of pressure on a cell", worst / 0.001), 1e-12);
 }
 
-// A spinning body whose finer part crosses cells and periodic faces: momentum to round-off, energy as on one lattice
+// A spinning body whose finer part crosses cells and periodic faces: momentum to round-off, energy
+// as on one lattice
 SERIAL_TEST(Momentum, OfABodyThatSpins)
 {
   Scene run(plane("lj", "p p", "0 16 0 16", 2, 0.3) +
@@ -197,8 +202,9 @@ static std::vector<std::array<double, 2>> wave(const std::string &points, double
   return rows;
 }
 
-// Waves that come to a jump of the spacing: what comes back is the difference to a strip with the one lattice. Lumped
-// linear functions have a known reflection, the same from both sides: 0.030253 for 8 coarse cells in a wave
+// Waves that come to a jump of the spacing: what comes back is the difference to a strip with the
+// one lattice. Lumped linear functions have a known reflection, the same from both sides: 0.030253
+// for 8 coarse cells in a wave
 SERIAL_TEST(Wave, IsHardlyReflected)
 {
   const double length = 8.0;
@@ -239,7 +245,8 @@ SERIAL_TEST(Wave, IsHardlyReflected)
   }
 }
 
-// Around an axis of symmetry velocities that are linear stay so, with the rim of the finer part everywhere but on the axis
+// Around an axis of symmetry velocities that are linear stay so, with the rim of the finer part
+// everywhere but on the axis
 SERIAL_TEST(Axisymmetric, VelocityStaysLinear)
 {
   for (const std::string shape : {"linear", "quadratic", "cubic"}) {
@@ -264,7 +271,8 @@ SERIAL_TEST(Axisymmetric, VelocityStaysLinear)
 
 namespace {
 
-/** Lattices of a body of revolution: one with the spacing h, or, with a plane where they meet, h on one side and h/2 on the other. */
+/** Lattices of a body of revolution: one with the spacing h, or, with a plane where they meet, h on
+ *  one side and h/2 on the other. */
 std::string rings(double h, const std::string &options, double r0, double r1, double meet,
                   bool fine_inside)
 {
@@ -290,7 +298,8 @@ struct Tube {
       hoop;    // error in the mean, at the bore, and of the hoop stress in the ring next to it
 };
 
-/** A thick-walled cylinder of radii 1 and 2 in plane strain under pressure in the bore, against Lame's solution: at rest. */
+/** A thick-walled cylinder of radii 1 and 2 in plane strain under pressure in the bore, against
+ *  Lame's solution: at rest. */
 Tube tube(double h, double meet, const std::string &options)
 {
   const double p = 1e-5, E = 1.0, nu = 0.3;
@@ -326,7 +335,8 @@ Tube tube(double h, double meet, const std::string &options)
   return {sqrt(square / all), bore, sqrt(stress / exact_stress)};
 }
 
-// A crack at the rim of a lattice spends another energy than elsewhere, which is told at the end of the run; one that is elsewhere is not
+// A crack at the rim of a lattice spends another energy than elsewhere, which is told at the end of
+// the run; one that is elsewhere is not
 TEST(Rim, CracksAreTold)
 {
   const struct {
@@ -350,7 +360,8 @@ TEST(Rim, CracksAreTold)
 
 }    // namespace
 
-// Lame's cylinder under pressure: with a finer ring around the bore it is nearly as right as if all of it were fine
+// Lame's cylinder under pressure: with a finer ring around the bore it is nearly as right as if all
+// of it were fine
 SERIAL_TEST(Axisymmetric, TubeUnderPressure)
 {
   for (const std::string options : {"frame total", "stress gradient"}) {
@@ -375,8 +386,9 @@ SERIAL_TEST(Axisymmetric, TubeUnderPressure)
   }
 }
 
-// A cylinder that swings around its axis, with a finer core and with a finer skin, has the exact frequency: order 2 with the gradients of
-// the functions. With those of affine terms, forces at the rim of a lattice have an error of their own, of order 1
+// A cylinder that swings around its axis, with a finer core and with a finer skin, has the exact
+// frequency: order 2 with the gradients of the functions. With those of affine terms, forces at the
+// rim of a lattice have an error of their own, of order 1
 SERIAL_TEST(Axisymmetric, CylinderSwings)
 {
   const double nu = 0.3, c = sqrt((1 - nu) / ((1 + nu) * (1 - 2 * nu)));

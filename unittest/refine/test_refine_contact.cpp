@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Fix mpm/contact of bodies that have lattices of several spacings (fix mpm/refine): one fix mpm/contact for each lattice.
+// Fix mpm/contact of bodies that have lattices of several spacings (fix mpm/refine): one fix
+// mpm/contact for each lattice.
 
 #include "mpm_lammps.h"
 
@@ -18,7 +19,8 @@ struct Part {    // what a body has on the lattice of a level: spacing 1, 1/2, .
   std::string region;    // empty: no points
 };
 
-/** Fields A0, A1, B0, ... and groups of the same names, united in bodies; points after all fixes. */
+/** Fields A0, A1, B0, ... and groups of the same names, united in bodies; points after all
+ *  fixes. */
 std::string fields(int dim, const std::vector<Part> &parts, const std::string &options)
 {
   std::string head, points;
@@ -123,8 +125,9 @@ const char *const HEAD_ON = "variable v atom 0.5*(x<6)-0.3*(x>6)\nvelocity all s
 
 }    // namespace
 
-// Two blocks collide, with the jump of the spacing in one or both of them: momentum is kept to round-off, and the other body gets what
-// it does on one lattice, between what it gets on the coarse and on the fine one (which lose energy where they meet, by their spacing)
+// Two blocks collide, with the jump of the spacing in one or both of them: momentum is kept to
+// round-off, and the other body gets what it does on one lattice, between what it gets on the
+// coarse and on the fine one (which lose energy where they meet, by their spacing)
 SERIAL_TEST(Collision, IsThatOnOneLattice)
 {
   for (const std::string options : {"", "scheme musl"}) {
@@ -143,7 +146,8 @@ SERIAL_TEST(Collision, IsThatOnOneLattice)
       const auto after = motion(run, parts, true), one = motion(run, parts, false);
       const std::string name = kind + " " + options;
       EXPECT_NEAR(measured(name + ": momentum", after.p / before.p), 1.0, 1e-12);
-      // a point of the finer lattice between tied nodes has an affine part of these: not to round-off
+      // a point of the finer lattice between tied nodes has an affine part of these: not to
+      // round-off
       EXPECT_NEAR(measured("  angular momentum", after.angular / before.angular), 1.0, 0.01)
           << name;
       measured("  momentum of B", one.p);
@@ -159,7 +163,8 @@ SERIAL_TEST(Collision, IsThatOnOneLattice)
   }
 }
 
-// They touch when their surfaces do, to a hundredth of a cell, though both have other functions from when they come near
+// They touch when their surfaces do, to a hundredth of a cell, though both have other functions
+// from when they come near
 SERIAL_TEST(Collision, BeginsWhereTheyTouch)
 {
   for (const std::string kind : {"jump of both", "jumps apart", "jump at the interface"}) {
@@ -222,8 +227,9 @@ std::string pile(const std::vector<Part> &parts, const std::string &options,
 
 }    // namespace
 
-// A block rests on another one: they press on each other with its weight, and the stress is that of the weight above, as on one lattice.
-// With affine terms in place of gradients, forces at the rim of a lattice are not those of the functions
+// A block rests on another one: they press on each other with its weight, and the stress is that of
+// the weight above, as on one lattice. With affine terms in place of gradients, forces at the rim
+// of a lattice are not those of the functions
 SERIAL_TEST(Rest, OnEachOther)
 {
   LONG_CASE();
@@ -255,7 +261,8 @@ SERIAL_TEST(Rest, OnEachOther)
   }
 }
 
-// All lattices of a body have one form of the stress by default, also where one of them alone touches the other body
+// All lattices of a body have one form of the stress by default, also where one of them alone
+// touches the other body
 SERIAL_TEST(Rest, OneFormOfTheStress)
 {
   const auto lines = [](const std::string &scene) {
@@ -272,7 +279,8 @@ SERIAL_TEST(Rest, OneFormOfTheStress)
             3u);
 }
 
-// It slides on the other one with friction: the force is the coefficient of friction times its weight
+// It slides on the other one with friction: the force is the coefficient of friction times its
+// weight
 SERIAL_TEST(Slide, HasTheFrictionOfTheWeight)
 {
   LONG_CASE();
@@ -297,8 +305,8 @@ SERIAL_TEST(Slide, HasTheFrictionOfTheWeight)
   }
 }
 
-// Three bodies, the thin middle one in contact with both others by fixes of its own: nodes of one that reach cells of the last one are
-// tied, too, as they are in the middle one
+// Three bodies, the thin middle one in contact with both others by fixes of its own: nodes of one
+// that reach cells of the last one are tied, too, as they are in the middle one
 SERIAL_TEST(Chain, OfThreeBodies)
 {
   const std::vector<Part> parts = {{'A', 0, "0 4 0 4"}, {'A', 1, "0 4 4 8"}, {'B', 0, ""},
@@ -382,7 +390,8 @@ SERIAL_TEST(BadInput, IsRefused)
   expect_error(plane("lj", "f f", "-4 20 -4 12", (int) empty.size(), 0.3) + fields(2, empty, "") +
                    "fix m all mpm/material density 1 neohookean 100 0.3\nrun 0\n",
                "no material points");
-  // a body that is on the fine lattice alone does not feel the coarse part; one on the coarse lattice alone feels all
+  // a body that is on the fine lattice alone does not feel the coarse part; one on the coarse
+  // lattice alone feels all
   const auto words = [&](const std::vector<Part> &some) {
     const std::string fixes = some[2].level == 1 ? c1 : c0;
     return lines_that_say(

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input ranks
 // mpi: 1 4
@@ -27,9 +27,10 @@ struct Lattices {
 
 }    // namespace
 
-// Between faces with two temperatures, the temperature of a body at rest is linear in space, and heat that flows is that of the whole
-// section: to round-off with linear functions. With others, products of functions along two axes have another integral by coarse points
-// than by fine ones, next to edges of the finer part
+// Between faces with two temperatures, the temperature of a body at rest is linear in space, and
+// heat that flows is that of the whole section: to round-off with linear functions. With others,
+// products of functions along two axes have another integral by coarse points than by fine ones,
+// next to edges of the finer part
 PARAMETER_TEST(Profile, IsLinear, Lattices,
                Values(Lattices{2, 2, "linear", ""}, Lattices{2, 3, "linear", "frame total"},
                       Lattices{3, 2, "linear", ""}, Lattices{2, 2, "quadratic", ""},
@@ -61,7 +62,8 @@ PARAMETER_TEST(Profile, IsLinear, Lattices,
               linear ? 1e-12 : 3e-3);
 }
 
-// A bar without heat through its ends, with a finer middle or a finer end: order 2, and not worse than on the coarse lattice alone
+// A bar without heat through its ends, with a finer middle or a finer end: order 2, and not worse
+// than on the coarse lattice alone
 SERIAL_TEST(Bar, CosineDecays)
 {
   for (const std::string shape : {"linear", "quadratic", "cubic"})
@@ -101,8 +103,8 @@ SERIAL_TEST(Bar, CosineDecays)
     }
 }
 
-// A body that turns and flies through periodic faces with a hot spot at its rim: heat to round-off, without new extremes beyond those
-// of points on one lattice
+// A body that turns and flies through periodic faces with a hot spot at its rim: heat to round-off,
+// without new extremes beyond those of points on one lattice
 SERIAL_TEST(Heat, IsKeptInABodyThatSpins)
 {
   for (const std::string transfer : {"relax 1.0", "affine", "pic"}) {
@@ -171,8 +173,8 @@ SERIAL_TEST(Heat, SpreadsAcrossTheRim)
   EXPECT_LT(around, 1.5 * fine);
 }
 
-// Heat comes in through a face that has coarse and fine cells, is the area times the flux; what follows the temperature outside does so
-// everywhere
+// Heat comes in through a face that has coarse and fine cells, is the area times the flux; what
+// follows the temperature outside does so everywhere
 SERIAL_TEST(Faces, HaveAllOfTheirArea)
 {
   for (const int dim : {2, 3})
@@ -192,7 +194,8 @@ SERIAL_TEST(Faces, HaveAllOfTheirArea)
       }
 }
 
-// A slab that convection warms on one side is held cold on the other: the profile and the flow at the end are those of the two in series
+// A slab that convection warms on one side is held cold on the other: the profile and the flow at
+// the end are those of the two in series
 SERIAL_TEST(Faces, ConvectionInSeries)
 {
   for (const std::string shape : {"linear", "quadratic"}) {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: input smoke
 // timeout: 900
@@ -196,7 +196,7 @@ TEST(RigidBodies, Refused)
   expect_error(flat + rigid, "in 2d, move a region with fix mpm/boundary");
 }
 
-// ---------------------------------------------------------------------- bodies that overlap at the start
+// -------------------------------------------- bodies that overlap at the start
 
 /** What the good scene says with this before its run. */
 static std::string said(const std::string &lines)

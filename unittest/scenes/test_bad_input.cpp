@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: input smoke
 // timeout: 900
@@ -261,8 +261,8 @@ static const Change companions[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ValuesIn(companions), case_name);
 
-// What runs but does nothing, or harm: one warning in each run, which names the remedy; and next to each
-// mistake an input like it that is fine.
+// What runs but does nothing, or harm: one warning in each run, which names the remedy; and next to
+// each mistake an input like it that is fine.
 static const char *const SKIN = "neighbor 0.5 bin\n";
 static const Change doubts[] = {
     {"None", RUN, RUN, ""},
@@ -339,9 +339,10 @@ TEST(Files, AreExplained)
   }
 }
 
-// A force that is not finite reaches all nodes of a point. Transfers other than that of the motion take from these
-// nodes before anybody has looked at the velocities of points: they must not move points, not even in no time, or the
-// next one looks for nodes that do not exist. A point that is nowhere ends the run also when bad points are kept.
+// A force that is not finite reaches all nodes of a point. Transfers other than that of the motion
+// take from these nodes before anybody has looked at the velocities of points: they must not move
+// points, not even in no time, or the next one looks for nodes that do not exist. A point that is
+// nowhere ends the run also when bad points are kept.
 PARAMETER_TEST(InfiniteForce, EndsTheRun, const char *,
                Values("shape gimp scheme musl locking both",
                       "shape cubic transfer pic scheme usavg locking both",
@@ -360,8 +361,8 @@ PARAMETER_TEST(InfiniteForce, EndsTheRun, const char *,
   EXPECT_THAT(error_of(rings), ::testing::ContainsRegex("Material point [0-9]+ at "));
 }
 
-// A force that is finite, but whose velocities have squares that are not: domains get sizes that are none, and corners
-// without weights, while their points still have places
+// A force that is finite, but whose velocities have squares that are not: domains get sizes that
+// are none, and corners without weights, while their points still have places
 PARAMETER_TEST(HugeForce, EndsTheRun, const char *, Values("(x<3)*1e200", "1e170*(id==5)"))
 {
   const std::string scene = space("lj", "p p p", "0 8 0 8 0 8", 1, 0.5) +
@@ -415,8 +416,8 @@ TEST_F(Policy, WarnGoesOnAndCounts)
   EXPECT_GT(kept, 0);
 }
 
-// a point that is inverted does not keep others from their plastic strain: two cells of one block of nodes and one
-// batch, which have no node in common
+// a point that is inverted does not keep others from their plastic strain: two cells of one block
+// of nodes and one batch, which have no node in common
 TEST(PolicyWarn, OtherPointsGoOn)
 {
   const auto strain = [](const std::string &fast) {
@@ -512,8 +513,8 @@ TEST(AfterAnError, TheInstanceCanGoOn)
   for (const auto &p : run.gather()) EXPECT_NEAR(p.v[0], 0.1, 1.0e-12);
 }
 
-// points that were made after their group, or whose group was not renewed; atoms without volume, and
-// points that another fix moves, are meant to be what they are
+// points that were made after their group, or whose group was not renewed; atoms without volume,
+// and points that another fix moves, are meant to be what they are
 TEST(PointsInNoField, HaveAWarning)
 {
   const std::string scene = space("lj", "p p p", "0 8 0 8 0 8", 2) +

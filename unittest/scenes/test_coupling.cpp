@@ -1,12 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
 // timeout: 600
 
-// Bodies in contact, walls, and grains in one run: the same on any number of ranks, after a restart,
-// and in any order of the fixes; what is out of reach changes nothing.
+// Bodies in contact, walls, and grains in one run: the same on any number of ranks, after a
+// restart, and in any order of the fixes; what is out of reach changes nothing.
 
 #include "mpm_lammps.h"
 
@@ -94,8 +94,8 @@ TEST(Coupling, OrderOfFixesDoesNotMatter)
   }
 }
 
-// grains that bounce on each other out of reach: bodies move as if there were none, to the last bit,
-// and so do the grains without the bodies
+// grains that bounce on each other out of reach: bodies move as if there were none, to the last
+// bit, and so do the grains without the bodies
 SERIAL_TEST(Coupling, OutOfReachIsNoCoupling)
 {
   const std::string away = "displace_atoms grain move 0 0 5\nvelocity grain set 0 0 0\n"

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics restart
 // mpi: 1 4
@@ -101,8 +101,9 @@ TEST(Deletion, IsOff)
   EXPECT_GT(failed, 8);
 }
 
-// a plate that breaks, and whose heat of fracture makes it expand: all of it is in the temperature and in the internal
-// energy, the ledger closes, and laws make no more errors than without that heat
+// a plate that breaks, and whose heat of fracture makes it expand: all of it is in the temperature
+// and in the internal energy, the ledger closes, and laws make no more errors than without that
+// heat
 TEST(Heat, OfFractureIsInTheInternalEnergy)
 {
   double laws[2];

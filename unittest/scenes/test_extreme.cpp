@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics extreme
 // timeout: 300
 
-// Stability at the extremes: a fast subset of bench/extremes, on one rank. Each number is also in the
-// tables of Howto_mpm_stability.rst.
+// Stability at the extremes: a fast subset of bench/extremes, on one rank. Each number is also in
+// the tables of Howto_mpm_stability.rst.
 
 #include "mpm_lammps.h"
 
@@ -64,8 +64,9 @@ PARAMETER_TEST(LightNodes, DoNotKickPoints, const char *,
             2.0);
 }
 
-/* The same in a body of revolution: a rod in a sleeve has the waves of the plane along its axis; of a
-   thick tube the speed of the outer face grows as (13/r)^1/2 while its wave goes inward, by 8 % here */
+/* The same in a body of revolution: a rod in a sleeve has the waves of the plane along its axis; of
+   a thick tube the speed of the outer face grows as (13/r)^1/2 while its wave goes inward, by 8 %
+   here */
 
 PARAMETER_TEST(LightRings, DoNotKickPoints, const char *,
                Values("transfer apic", "shape linear transfer flip 1.0 scheme usl light 0.5",
@@ -136,9 +137,10 @@ TEST(LightNodes3d, BallInFlight)
   }
 }
 
-/* The blend itself. A point alone in its cell, at rest, with density rho, volume V = 1/4 and pressure p: node
-   i gets dt p V grad N_i/(rho V N_i), and its share of a full cell is V N_i, so that N_i cancels in
-   C = sum_i (V N_i/light) v_i grad N_i = (V/light) dt p/rho sum_i grad N_i grad N_i, while <v> = 0. */
+/* The blend itself. A point alone in its cell, at rest, with density rho, volume V = 1/4 and
+   pressure p: node i gets dt p V grad N_i/(rho V N_i), and its share of a full cell is V N_i, so
+   that N_i cancels in C = sum_i (V N_i/light) v_i grad N_i = (V/light) dt p/rho sum_i grad N_i grad
+   N_i, while <v> = 0. */
 
 TEST(LightNodes, ShareIsThatOfTheVolume)
 {
@@ -159,11 +161,11 @@ TEST(LightNodes, ShareIsThatOfTheVolume)
   }
 }
 
-/* Of a ring at the radius r, of any mass, it is that of the area A: nodes get dt p/rho (grad N_i/N_i + e_r/r),
-   the second part from stress around the axis, have the share A N_i, and <v> = dt p/(rho r) e_r is the same
-   for all of them, so that the gradient is that of the plane. At the axis, r = fx, two nodes do not move along
-   x; the others have dt p/rho 2/fx instead and <v> = 2 dt p/rho. Around the axis counts the motion itself: F_zz
-   is the radius over the one before. */
+/* Of a ring at the radius r, of any mass, it is that of the area A: nodes get dt p/rho (grad
+   N_i/N_i + e_r/r), the second part from stress around the axis, have the share A N_i, and <v> = dt
+   p/(rho r) e_r is the same for all of them, so that the gradient is that of the plane. At the
+   axis, r = fx, two nodes do not move along x; the others have dt p/rho 2/fx instead and <v> = 2 dt
+   p/rho. Around the axis counts the motion itself: F_zz is the radius over the one before. */
 
 TEST(LightRings, ShareIsThatOfTheArea)
 {
@@ -341,8 +343,9 @@ TEST(LightNodes, KeepEnergyWithTheCuresForLocking)
   }
 }
 
-/** In the total frame the limit at nodes of next to no mass is that of the warning, if they are there: the
- *  bar is moved by 1/4 h + shift, a layer of points is at the distance shift from the faces of empty cells. */
+/** In the total frame the limit at nodes of next to no mass is that of the warning, if they are
+ *  there: the bar is moved by 1/4 h + shift, a layer of points is at the distance shift from the
+ *  faces of empty cells. */
 TEST(TotalLightNodes, LimitIsThatOfTheWarning)
 {
   const double mistake =
@@ -352,8 +355,8 @@ TEST(TotalLightNodes, LimitIsThatOfTheWarning)
                               "shape bernstein frame total transfer flip 1.0"})
     for (double shift : {1.0e-3, 0.01}) {
       SCOPED_TRACE(options);
-      // the stiffest node has one layer of points: k/m = N'^2/N of them, N = shift or, Bernstein, 2 s (1 - s)
-      // with s = shift/2
+      // the stiffest node has one layer of points: k/m = N'^2/N of them, N = shift or, Bernstein, 2
+      // s (1 - s) with s = shift/2
       const double s = 0.5 * shift,
                    bernstein = (1.0 - 2.0 * s) * (1.0 - 2.0 * s) / (2.0 * s * (1.0 - s));
       const double limit = 1.0 / sqrt(strstr(options, "bernstein") ? bernstein : 1.0 / shift);
@@ -386,8 +389,8 @@ TEST(TimeStepBeyond, EndsWithAnError)
 }
 
 /* ----------------------------------------------------------------------
-   10^5 steps: energy stays bounded, momentum is that of the start. (10^6 in bench/extremes, where flip
-   1.0 with musl gains energy without bound, 10 % in 10^5 steps.)
+   10^5 steps: energy stays bounded, momentum is that of the start. (10^6 in bench/extremes, where
+   flip 1.0 with musl gains energy without bound, 10 % in 10^5 steps.)
 ------------------------------------------------------------------------- */
 
 TEST(ManySteps, EnergyAndMomentum)
@@ -453,7 +456,8 @@ TEST(AdaptiveTimeStep, FollowsWithinOneStep)
   EXPECT_LT(run.lmp->update->dt, 0.02 * before);
 }
 
-// A pressure beyond what a law bears makes points vanish, which the end of the run tells; not where one becomes stiff
+// A pressure beyond what a law bears makes points vanish, which the end of the run tells; not where
+// one becomes stiff
 SERIAL_TEST(Told, PointsThatVanish)
 {
   const auto told = [](const std::string &law) {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics extreme ranks
 // mpi: 2 4
@@ -12,8 +12,8 @@
 
 using namespace MPM_TEST;
 
-/** A body flies at half of its wave speed along the diagonal of a periodic box, over faces, edges and the
- *  corner where ranks meet, three times around. */
+/** A body flies at half of its wave speed along the diagonal of a periodic box, over faces, edges
+ *  and the corner where ranks meet, three times around. */
 PARAMETER_TEST(AtSpeed, AcrossPeriodicFacesAndCorners, const char *,
                Values("transfer apic", "transfer flip 1.0 scheme musl",
                       "shape cpgimp transfer apic scheme usavg",

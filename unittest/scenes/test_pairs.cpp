@@ -1,13 +1,14 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart ranks
 // mpi: 2
 // timeout: 300
 
-// Choices of all kinds together: options of fix mpm, walls, bodies, laws, and commands between two runs.
-// Each pair of them is refused with what to do instead, or is in a scene with some others that has the
-// same result on one rank and on two, and after a restart file in the middle of the run.
+// Choices of all kinds together: options of fix mpm, walls, bodies, laws, and commands between two
+// runs. Each pair of them is refused with what to do instead, or is in a scene with some others
+// that has the same result on one rank and on two, and after a restart file in the middle of the
+// run.
 
 #include "mesh/stl_testing.h"
 
@@ -21,8 +22,8 @@ using namespace MPM_TEST;
 
 namespace {
 
-/** Where lines of a choice go: before the box; options of fix mpm; the law; fixes, which are defined
- *  again after a restart file; commands between two runs. */
+/** Where lines of a choice go: before the box; options of fix mpm; the law; fixes, which are
+ *  defined again after a restart file; commands between two runs. */
 enum Place { HEAD, OPTION, LAW, FIX, BETWEEN };
 
 struct Choice {
@@ -174,8 +175,8 @@ std::string lines(const Chosen &chosen, Place place)
   return text;
 }
 
-/** The scene with some choices: what comes before the first run, after a restart file, and between two
- *  runs. */
+/** The scene with some choices: what comes before the first run, after a restart file, and between
+ *  two runs. */
 struct Combination {
   std::string scene, again, between;
 
@@ -301,8 +302,8 @@ std::string box_mesh(int dim)
       "$EndNodes\n$Elements\n" + std::to_string(nelement) + "\n" + elements + "$EndElements\n";
 }
 
-/** Write scene number k as an input for bench/same_bits.py: the whole run, and again from a restart file in the
- *  middle. */
+/** Write scene number k as an input for bench/same_bits.py: the whole run, and again from a restart
+ *  file in the middle. */
 void write_scene(const std::string &folder, int dim, int k, const Chosen &chosen)
 {
   const std::string mesh = strprintf("box%d.msh", dim), stl = "box.stl";

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -114,9 +114,10 @@ TEST_P(SinglePoint, TenPeriods)
   measured("A1 period - 1", period - 1.0);
   if (GetParam() == std::string("usl")) {
     // the strain follows the node, whose velocity changes by 1/N = 2 times that of the point: this
-    // damps, e' = v - (1/N - 1) dt E e, E/E0 = exp(-(1/N - 1) dt E t) = 0.674 after ten periods. The
-    // velocity is then off by 18 %, and the 0.31 % of the other schemes cannot hold: what must be is the
-    // recursion of these two numbers, to the third order of the strain of a step, 1e-4, times 1e4 steps
+    // damps, e' = v - (1/N - 1) dt E e, E/E0 = exp(-(1/N - 1) dt E t) = 0.674 after ten periods.
+    // The velocity is then off by 18 %, and the 0.31 % of the other schemes cannot hold: what must
+    // be is the recursion of these two numbers, to the third order of the strain of a step, 1e-4,
+    // times 1e4 steps
     EXPECT_LT(measured("A1 error against the recursion of USL", error_usl / 0.1), 1.0e-8);
     EXPECT_NEAR(energy_min, exp(-1.0e-3 * 4.0 * PI * PI * 10.0), 0.01);
     EXPECT_LT(energy_max, 1.0 + 1.3 * 0.00315);
@@ -136,7 +137,7 @@ TEST_P(SinglePoint, TenPeriods)
 
 INSTANTIATE_TEST_SUITE_P(Scheme, SinglePoint, ::testing::Values("usl", "usf", "musl"));
 
-/* ---- A2: first vibration mode of a bar of length 25, fixed at one end. Period 10, energy constant. */
+/* ---- A2: first mode of a bar of length 25, fixed at one end. Period 10, energy constant. */
 
 struct Vibration {
   double period, energy;    // relative to the exact ones
@@ -172,11 +173,12 @@ static Vibration vibrate(const std::string &options, int cells, int ppc, bool wa
           measured(name + "E/E0", (run.sums().kinetic + run.stored_energy()) / start)};
 }
 
-/** The same bar in a code of its own, one-dimensional and linear, without the package: points stay where
- *  they are, nodes in rows, from -25 to 25 instead of a wall. Splines of the order, usl or musl; transfers
- *  flip 1.0; apic with C = B/D and the force of the same moment, but for order 1; tpic with the gradient of
- *  the functions in both. mode: of vibration, until: the end. Period, and energy at the end, of the points'
- *  velocities and strains, over those of the continuum and of the start. */
+/** The same bar in a code of its own, one-dimensional and linear, without the package: points stay
+ *  where they are, nodes in rows, from -25 to 25 instead of a wall. Splines of the order, usl or
+ *  musl; transfers flip 1.0; apic with C = B/D and the force of the same moment, but for order 1;
+ *  tpic with the gradient of the functions in both. mode: of vibration, until: the end. Period, and
+ *  energy at the end, of the points' velocities and strains, over those of the continuum and of the
+ *  start. */
 static Vibration independent(int order, const std::string &transfer, bool musl, int cells,
                              int mode = 1, double until = 100.0)
 {
@@ -263,10 +265,12 @@ struct VibrationCase {
 };
 
 // Linear: an independent code, to 10 % of the period's deviation and 0.002 of the energy (FLIP
-// 0.99: 0.01). Others: the everyday gate of 0.5 % and 1 %, but for cubic APIC and TPIC, which pay per step
-// for what the affine field of a point does not hold: the code above, which has nothing of the package,
-// has lost more than 1 % after 3200 steps. Of splines, that number is asked, to a tenth of the gate. The transfers alone of a wave with kh = 0.098, 2 points per cell and without forces, take 2.2e-6
-// (APIC) and 3.0e-6 (TPIC) of the amplitude of the velocity per step: 0.9929 and 0.9905; USL takes the rest.
+// 0.99: 0.01). Others: the everyday gate of 0.5 % and 1 %, but for cubic APIC and TPIC, which pay
+// per step for what the affine field of a point does not hold: the code above, which has nothing of
+// the package, has lost more than 1 % after 3200 steps. Of splines, that number is asked, to a
+// tenth of the gate. The transfers alone of a wave with kh = 0.098, 2 points per cell and without
+// forces, take 2.2e-6 (APIC) and 3.0e-6 (TPIC) of the amplitude of the velocity per step: 0.9929
+// and 0.9905; USL takes the rest.
 static const VibrationCase vibrating_bar_cases[] = {
     {"shape linear transfer flip 1.0 scheme usl", 16, 2, 1.00133, 1.3e-4, .9962, .002},
     {"shape linear transfer flip 1.0 scheme musl", 16, 2, 1.00133, 1.3e-4, .9984, .002},
@@ -311,10 +315,11 @@ PARAMETER_TEST(VibratingBar, TenPeriods, VibrationCase, ValuesIn(vibrating_bar_c
 }
 
 /* ----------------------------------------------------------------------
-   A2, mode 10 in 64 cells, 6.7 cells in a wave, over 38 periods, by another code: period and energy over
-   the exact ones, 1.0295 and .958 (FLIP with MUSL), 1.0083 and 1.053 (APIC). Of the period, a tenth of the
-   deviation; the energy of a leapfrog scheme is 1 +- omega dt/2 = 1 +- .047 by its phase, and a tenth of
-   the deviation, over 38 periods, is any phase. The code above is asked to four digits.
+   A2, mode 10 in 64 cells, 6.7 cells in a wave, over 38 periods, by another code: period and energy
+   over the exact ones, 1.0295 and .958 (FLIP with MUSL), 1.0083 and 1.053 (APIC). Of the period, a
+   tenth of the deviation; the energy of a leapfrog scheme is 1 +- omega dt/2 = 1 +- .047 by its
+   phase, and a tenth of the deviation, over 38 periods, is any phase. The code above is asked to
+   four digits.
 ------------------------------------------------------------------------- */
 
 TEST(VibratingBarModeTen, PeriodAndEnergy)
@@ -380,9 +385,10 @@ struct Impact {
 };
 
 //
-// Linear functions: a point that goes through a face of a cell changes the forces on the nodes by up to half
-// of its stress (A4), so that nothing can be asked to 2 % where the bars move by cells. Unequal bars do, by
-// 1.5 cells at these velocities; at a tenth of them, with the same answer, no point crosses a face.
+// Linear functions: a point that goes through a face of a cell changes the forces on the nodes by
+// up to half of its stress (A4), so that nothing can be asked to 2 % where the bars move by cells.
+// Unequal bars do, by 1.5 cells at these velocities; at a tenth of them, with the same answer, no
+// point crosses a face.
 static void collide(const std::string &options, Impact c)
 {
   SCOPED_TRACE(strprintf("second bar: length %g, modulus %g", c.length2, c.E2));
@@ -440,8 +446,9 @@ static void collide(const std::string &options, Impact c)
     EXPECT_NEAR(body.p[0] / body.mass / speed, v_after[type] / speed, 0.02);
   }
   EXPECT_NEAR(measured(name + "interface stress/exact", stress / samples / c.plateau), 1.0, 0.02);
-  // 15 %, without viscosity, is for APIC. FLIP damps nothing: the front of a step in a chain of masses and
-  // springs is an integral of the Airy function, whose maximum is 1.2743 however fine the chain is
+  // 15 %, without viscosity, is for APIC. FLIP damps nothing: the front of a step in a chain of
+  // masses and springs is an integral of the Airy function, whose maximum is 1.2743 however fine
+  // the chain is
   const double overshoot = measured(name + "extreme stress of a point/exact", lowest / c.plateau);
   EXPECT_LT(overshoot, name.find("apic") == std::string::npos ? 1.2743 : 1.15);
   if (c.equal) {
@@ -675,11 +682,11 @@ PARAMETER_TEST(Pulse, WaveSpeed, PulseCase, ValuesIn(pulse_cases))
 }
 
 /* ----------------------------------------------------------------------
-   J5: the same bar at rest, 20 cells, over 5e4 steps, 250 periods: FLIP 1 with MUSL
-   keeps its energy with B-splines and in the total frame; USL may only lose. The numbers of an
-   independent code are given as a comment: E/E0 after 5e4 steps. With leapfrog, whose velocities are those of
-   half a step before, the energy is 1 +- omega dt/2 = 1 +- 0.0157, depending on the phase, for a linear bar;
-   here a tenth of that more.
+   J5: the same bar at rest, 20 cells, over 5e4 steps, 250 periods: FLIP 1 with MUSL keeps its
+   energy with B-splines and in the total frame; USL may only lose. The numbers of an independent
+   code are given as a comment: E/E0 after 5e4 steps. With leapfrog, whose velocities are those of
+   half a step before, the energy is 1 +- omega dt/2 = 1 +- 0.0157, depending on the phase, for a
+   linear bar; here a tenth of that more.
 ------------------------------------------------------------------------- */
 
 struct LongBar {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 300
@@ -46,8 +46,9 @@ TEST(SimpleShear, OfAHardeningMetal)
 /* ----------------------------------------------------------------------
    A column under its own weight (A. G. Greenhill, Proc. Camb. Phil. Soc. 4, 65 (1881)) buckles at
      rho g A L^3/(E I) = 7.837
-   and vibrates below that with a frequency whose square falls with g in proportion, but for less than a
-   percent of that without weight. Plane strain, E/(1 - nu^2), a tenth as thick as high, four cells across.
+   and vibrates below that with a frequency whose square falls with g in proportion, but for less
+   than a percent of that without weight. Plane strain, E/(1 - nu^2), a tenth as thick as high, four
+   cells across.
 ------------------------------------------------------------------------- */
 
 static std::vector<std::array<double, 2>> sway(double share, double until)
@@ -102,10 +103,11 @@ TEST(Column, BucklesUnderItsWeight)
 }
 
 /* ----------------------------------------------------------------------
-   A silo (H. A. Janssen, Z. Ver. Dtsch. Ing. 39, 1045 (1895)): walls with friction carry a part of the
-   sand. In a plane bin of the width w, filled to the height H, the floor carries
+   A silo (H. A. Janssen, Z. Ver. Dtsch. Ing. 39, 1045 (1895)): walls with friction carry a part of
+   the sand. In a plane bin of the width w, filled to the height H, the floor carries
      rho g l w (1 - exp(-H/l)),  l = w/(2 mu K)
-   with the ratio K of horizontal to vertical stress, which the run tells. The weight is put on slowly.
+   with the ratio K of horizontal to vertical stress, which the run tells. The weight is put on
+   slowly.
 ------------------------------------------------------------------------- */
 
 TEST(Silo, WallsCarryAPart)

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -90,7 +90,7 @@ TEST_P(RigidMotion, FreeFall)
 
 INSTANTIATE_TEST_SUITE_P(Dimension, RigidMotion, ::testing::Values(2, 3));
 
-/* ---- a force on group all acts once on each body, whether they share a field or not (pitfall 4) */
+/* ---- a force on group all acts once on each body, in a field of its own or not (pitfall 4) */
 
 TEST(TwoBodies, FallWithG)
 {
@@ -384,8 +384,8 @@ PARAMETER_TEST(DrivenRotation, TenTurns, RotationCase, ValuesIn(driven_rotation_
     for (int k = 0; k < 6; k++)
       error_s = std::max(error_s, std::abs(run.points().tau[i][k] - s0[k]));
   }
-  // after 1000 steps of 0.06 rad, round-off alone: 1e-10 of the stress, and of the modulus for rubber,
-  // whose stress of 1e-3 of it is what J and F leave
+  // after 1000 steps of 0.06 rad, round-off alone: 1e-10 of the stress, and of the modulus for
+  // rubber, whose stress of 1e-3 of it is what J and F leave
   EXPECT_GT(turned, 1.0);
   EXPECT_LT(measured("driven rotation, |J - J0|", error_J), 1.0e-11);
   EXPECT_LT(measured("driven rotation, error of position", error_x), 1.0e-11);
@@ -418,14 +418,14 @@ timestep 0.001
 
 // FLIP MUSL: E/E0 0.985 to 1.015, KE/KE0 0.86 to 0.94; others: losses as tabulated, 10 %. The table
 // (hat MUSL 2.407 + .187, bs2 MUSL 2.269 + .328, FLIP 0.99 E/E0 .856, PIC .043, APIC .295) is for a
-// law in the rate of the Cauchy stress. With that law, tried in a copy, this package gives
-// 2.408 + .187, 2.271 + .337, .857, .043, .279. Law `linear' is in the rate of the Kirchhoff
-// stress, stiffer at the compression of 15 % of this impact, and gives E/E0 .999, .999, .834,
-// .055, .299. Quadratic MUSL has KE/KE0 = .855, .885, .871 with 20, 40, 80 cells (the table's law .873,
-// .905, .898; neohookean .869, .905, .901): with law `linear', 20 cells are too few for the gate, which
-// neohookean passes there, and which is asked of all with 40 cells, see Refined. Cubic functions, 16 nodes
-// in the two halves of a disk of 8 cells, leave more in vibrations: .815 (neohookean .847) with 20 cells.
-// Linear USL is missing: see is_sound(), points pass exactly through nodes here.
+// law in the rate of the Cauchy stress. With that law, tried in a copy, this package gives 2.408 +
+// .187, 2.271 + .337, .857, .043, .279. Law `linear' is in the rate of the Kirchhoff stress,
+// stiffer at the compression of 15 % of this impact, and gives E/E0 .999, .999, .834, .055, .299.
+// Quadratic MUSL has KE/KE0 = .855, .885, .871 with 20, 40, 80 cells (the table's law .873, .905,
+// .898; neohookean .869, .905, .901): with law `linear', 20 cells are too few for the gate, which
+// neohookean passes there, and which is asked of all with 40 cells, see Refined. Cubic functions,
+// 16 nodes in the two halves of a disk of 8 cells, leave more in vibrations: .815 (neohookean .847)
+// with 20 cells. Linear USL is missing: see is_sound(), points pass exactly through nodes here.
 static const DisksCase two_disks_cases[] = {
     {"shape linear transfer flip 1.0 scheme musl", .985, 1.015, .86, .94},
     {"shape quadratic transfer flip 1.0 scheme musl", .985, 1.015, .85, .94},
@@ -760,8 +760,8 @@ PARAMETER_TEST(FreeBody, Invariants, const char *,
   const std::string name = strprintf("free body %s: ", GetParam());
   EXPECT_LT(measured(name + "mass", mass), 1.0e-13);
   EXPECT_LT(measured(name + "momentum", p), 1.0e-13);
-  // musl moves points with velocities that were mapped back, and not with those that they have: what that changes is
-  // known to round-off, and as small as the manual says
+  // musl moves points with velocities that were mapped back, and not with those that they have:
+  // what that changes is known to round-off, and as small as the manual says
   if (strstr(GetParam(), "apic")) {
     EXPECT_LT(measured(name + "angular momentum", L), 1.0e-12);
     double size = 0.0;
@@ -772,8 +772,8 @@ PARAMETER_TEST(FreeBody, Invariants, const char *,
 }
 
 /* ----------------------------------------------------------------------
-   compute mpm/atom angmom: in a rigid rotation the affine field of a point has m omega (D_xx + D_yy),
-   where D is the mean of r r over its shape functions
+   compute mpm/atom angmom: in a rigid rotation the affine field of a point has m omega (D_xx +
+   D_yy), where D is the mean of r r over its shape functions
 ------------------------------------------------------------------------- */
 
 struct AffineSpin {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -91,7 +91,8 @@ static double hanging_bar(const HangingCase &c)
       for (int d = 0; d < 2; d++) force[i][d] -= 2.0 * omega * run.mass()[i] * run.v()[i][d];
     }
   });
-  // the tangent modulus mu (1 + 1/F^2) + lambda (1 - ln F)/F^2 of a long stretch is less: it comes to rest later
+  // the tangent modulus mu (1 + 1/F^2) + lambda (1 - ln F)/F^2 of a long stretch is less: it comes
+  // to rest later
   const double dt = 0.2 * h / speed, rest = (c.g > 500.0 ? 60.0 : 20.0) / omega;
   run.commands(strprintf("timestep %.17g\nrun %ld\n", dt, std::lround((ramp + rest) / dt)));
   double worst = 0.0, last = 0.0, exact_last = 0.0, sideways = 0.0;
@@ -223,9 +224,10 @@ PARAMETER_TEST(Beam, Tip, BeamCase, ValuesIn(beam_cases))
 }
 
 /* ----------------------------------------------------------------------
-   The same, held by a region in which it goes on for two cells (bench/atlas/in.cantilever), 2 x 2 points in a cell: the upper side
-   is under tension. As long as points moved with other velocities than strain takes with musl and usavg, they came down by
-   3.53, 3.76, 3.74, and 3.59 m, and .57 and .45 of the energy was lost with apic (.02 and .03 with flip)
+   The same, held by a region in which it goes on for two cells (bench/atlas/in.cantilever), 2 x 2
+   points in a cell: the upper side is under tension. As long as points moved with other velocities
+   than strain takes with musl and usavg, they came down by 3.53, 3.76, 3.74, and 3.59 m, and .57
+   and .45 of the energy was lost with apic (.02 and .03 with flip)
 ------------------------------------------------------------------------- */
 
 PARAMETER_TEST(TensedBeam, Tip, const char *,

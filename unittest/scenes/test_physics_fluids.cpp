@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -65,7 +65,8 @@ class RiemannSolution {
   double g;
 };
 
-/** A strip that is one cell wide, up to x = length; the lattice has the options, and the ledger is on. */
+/** A strip that is one cell wide, up to x = length; the lattice has the options, and the ledger is
+ *  on. */
 std::string strip(double length, double h, const std::string &options, int types = 1)
 {
   return plane("si", "f p", strprintf("0 %.17g 0 %.17g", length, h), types, 0.4 * h) +
@@ -155,9 +156,10 @@ TEST(Sod, LinearShapeFunctionsDoNotConverge)
 }
 
 /* ----------------------------------------------------------------------
-   Gas at rest under pressure, with noise. Points in the middle of cells are on the edges of functions
-   of nodes that are 1.5 spacings away, where N = s^2/2, and (grad N)^2/N = 2 however little s they reach over: all
-   of the pressure comes at once, and the noise grows. Between the edges it does not.
+   Gas at rest under pressure, with noise. Points in the middle of cells are on the edges of
+   functions of nodes that are 1.5 spacings away, where N = s^2/2, and (grad N)^2/N = 2 however
+   little s they reach over: all of the pressure comes at once, and the noise grows. Between the
+   edges it does not.
 ------------------------------------------------------------------------- */
 
 TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
@@ -458,8 +460,8 @@ TEST(Channel, StartUpOfNewtonianFlow)
 }
 
 /** Channel with walls y = -1 and y = 1 and body force 1, from 0.9 of the steady flow: L2 error of
- *  the velocity after some time relative to the largest one. FLIP, since the numerical viscosity of APIC grows with the
- *  number of steps, and the viscosity at rest makes steps small. */
+ *  the velocity after some time relative to the largest one. FLIP, since the numerical viscosity of
+ *  APIC grows with the number of steps, and the viscosity at rest makes steps small. */
 double steady(const std::string &viscosity, double time, double dt,
               const std::function<double(double)> &u)
 {
@@ -507,11 +509,11 @@ TEST(Channel, SteadyFlowOfYieldStressAndPowerLawFluids)
 }
 
 /* ----------------------------------------------------------------------
-   Drops in free flight. A point that is alone keeps the shear of its velocity gradient L, as nothing
-   acts on it, and its deformation gradient grows for ever; its J must not take notice of that. With
-   APIC and quadratic functions the nodes give dL/dt = -4 J sigma/(density_0 h^2), so that small
-   changes of volume are oscillations of ln J with the frequency 2 sqrt(DIM) c/h, and
-   V_0 psi + m h^2/8 L:L is conserved.
+   Drops in free flight. A point that is alone keeps the shear of its velocity gradient L, as
+   nothing acts on it, and its deformation gradient grows for ever; its J must not take notice of
+   that. With APIC and quadratic functions the nodes give dL/dt = -4 J sigma/(density_0 h^2), so
+   that small changes of volume are oscillations of ln J with the frequency 2 sqrt(DIM) c/h, and V_0
+   psi + m h^2/8 L:L is conserved.
 ------------------------------------------------------------------------- */
 
 constexpr double SHEAR = 0.5, DT = 0.02, DENSITY = 1.5, BULK = 150.0;
@@ -615,8 +617,8 @@ TEST(FreeFlight, DropThatIsTornGainsNoEnergy)
   }
 }
 
-// Far from rest that oscillator is not harmonic: compressed water is stiff, so that the time step must
-// be small when it comes back from its largest volume, where its waves are slow
+// Far from rest that oscillator is not harmonic: compressed water is stiff, so that the time step
+// must be small when it comes back from its largest volume, where its waves are slow
 TEST(FreeFlight, StrainOfAStepIsLimited)
 {
   for (const char *limit : {"", " strain 0.05"})
@@ -639,7 +641,8 @@ TEST(FreeFlight, StrainOfAStepIsLimited)
       }
 }
 
-// what is forgotten there matters to a law that knows all of F, and to the lattice in the total frame
+// what is forgotten there matters to a law that knows all of F, and to the lattice in the total
+// frame
 TEST(FreeFlight, SolidsForgetNothing)
 {
   for (int dim : {2, 3}) {

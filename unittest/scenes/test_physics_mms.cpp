@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -132,10 +132,11 @@ struct Row {
   friend void PrintTo(const Row &c, std::ostream *out) { *out << c.options << ", G = " << c.G; }
 };
 
-// Errors of an independent code, to 3 % or 10 %. Linear functions converge until points cross cells,
-// G = 0.05, and diverge then, but not in the total frame; for motions without crossings, frames agree.
-// Quadratic: it has open knot vectors at the ends, which matters for less than 16 and 8 cells. With MUSL it moves points
-// with the velocities of the nodes, which makes noise under tension: with 64 cells we are better.
+// Errors of an independent code, to 3 % or 10 %. Linear functions converge until points cross
+// cells, G = 0.05, and diverge then, but not in the total frame; for motions without crossings,
+// frames agree. Quadratic: it has open knot vectors at the ends, which matters for less than 16 and
+// 8 cells. With MUSL it moves points with the velocities of the nodes, which makes noise under
+// tension: with 64 cells we are better.
 static const Row interval_cases[] = {
     {"shape linear scheme usl", 1e-4, .03, 4, {3.115e-5, 8.917e-6, 2.278e-6, 5.721e-7, 1.432e-7}},
     {"shape linear scheme musl", 1e-4, .03, 4, {3.317e-5, 8.999e-6, 2.282e-6, 5.722e-7, 1.432e-7}},
@@ -216,10 +217,11 @@ TEST(OrderLinear, DivergesWithCellCrossing)
   EXPECT_GT(mms_error(2, 16, .05, options, true), 0.5 * mms_error(2, 8, .05, options, true));
 }
 
-// GIMP with fixed sizes: where the body is compressed at a wall, boxes reach beyond it, and mirror walls
-// do as well as symmetry. Expected: a small code of its own in one dimension with such walls. With nodes
-// at and within the walls only, as in the table, the functions of these points do not sum to one, and
-// it has 7.5e-3, 2.28e-3, 7.8e-4; contiguous boxes never reach beyond, and agree with the table.
+// GIMP with fixed sizes: where the body is compressed at a wall, boxes reach beyond it, and mirror
+// walls do as well as symmetry. Expected: a small code of its own in one dimension with such walls.
+// With nodes at and within the walls only, as in the table, the functions of these points do not
+// sum to one, and it has 7.5e-3, 2.28e-3, 7.8e-4; contiguous boxes never reach beyond, and agree
+// with the table.
 TEST(FixedGimp, WallsAgainstSymmetry)
 {
   const std::string options = "shape gimp aspect 1 2 transfer flip 1.0 scheme usl";
@@ -244,9 +246,9 @@ struct ShapeOrder {
   friend void PrintTo(const ShapeOrder &c, std::ostream *out) { *out << c.options; }
 };
 
-// Crossing: linear functions do not converge (-0.69 by another code, whose other transfers are not known);
-// quadratic functions and gimp approach the error at which they stall, 1.86 and 1.87 by other codes: the
-// table above and FixedGimp
+// Crossing: linear functions do not converge (-0.69 by another code, whose other transfers are not
+// known); quadratic functions and gimp approach the error at which they stall, 1.86 and 1.87 by
+// other codes: the table above and FixedGimp
 static const ShapeOrder shapes[] = {
     {"shape linear", -0.69, 3.0 / 16.0},
     {"shape quadratic", 1.86, 1.0 / 4.0},
@@ -268,14 +270,15 @@ static const TransferOrder orders[] = {
     {"aflip 1.0", 2.0, false, false},
     {"tpic", 2.0, false, false},
     {"xpic 2", 2.0, true, false},
-    // Damps waves by (D k^2 h^2)^2 in each of 1/h steps: order 3, where the other errors, of order 2,
-    // are small, as they are with functions of higher order than linear
+    // Damps waves by (D k^2 h^2)^2 in each of 1/h steps: order 3, where the other errors, of order
+    // 2, are small, as they are with functions of higher order than linear
     {"fmpm 2", 0.0, true, true},
 };
 
-/** Largest rms error of pic for a small amplitude, relative to it: of what goes to the nodes and back, a wave
- *  loses the share D k^2 h^2 in each step, so that its amplitude falls as exp(-D (pi h)^2 t / 2 dt), with
- *  dt = 0.2 h/c as exp(-2.5 D pi^2 h c t). The error is of first order when this exponent is small. */
+/** Largest rms error of pic for a small amplitude, relative to it: of what goes to the nodes and
+ *  back, a wave loses the share D k^2 h^2 in each step, so that its amplitude falls as exp(-D (pi
+ *  h)^2 t / 2 dt), with dt = 0.2 h/c as exp(-2.5 D pi^2 h c t). The error is of first order when
+ *  this exponent is small. */
 static double pic_error(double D, int ne)
 {
   double error = 0.0;
@@ -320,11 +323,12 @@ PARAMETER_TEST(Sweep, EveryTransferAndFrame, ShapeOrder, ValuesIn(shapes))
   }
 }
 
-// Functions that are modified at the walls and need no nodes outside are of second order, too. Between
-// walls that slip the solution is odd about them, so that the linear continuation f_-1 = 2 f_0 - f_1 and
-// the mirror image -f_1 are the same: what differs is the lumped mass of the first node inside alone, by
-// twice that of its image. With v = sin(pi x) this is a part of order h (pi h)^2 of the mass of the
-// motion, so that the two differ by one order more than each of them from the exact solution.
+// Functions that are modified at the walls and need no nodes outside are of second order, too.
+// Between walls that slip the solution is odd about them, so that the linear continuation f_-1 = 2
+// f_0 - f_1 and the mirror image -f_1 are the same: what differs is the lumped mass of the first
+// node inside alone, by twice that of its image. With v = sin(pi x) this is a part of order h (pi
+// h)^2 of the mass of the motion, so that the two differ by one order more than each of them from
+// the exact solution.
 TEST(MMS, EdgesModified)
 {
   for (const char *options : {"shape cubic transfer flip 1.0 scheme musl",

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics extreme
 // timeout: 300
@@ -11,9 +11,10 @@
 using namespace MPM_TEST;
 
 /* ----------------------------------------------------------------------
-   J3: a bar whose half is 1e6 times as stiff, of the same density: the impedances have the ratio 1000. Of a
-   pulse in the soft half R = 999/1001 = .99800 of the stress returns, and 1.99800 goes on, to 1 %; the end of the
-   stiff half absorbs it. The functions of the total frame are linear, so that nothing is smeared but one cell.
+   J3: a bar whose half is 1e6 times as stiff, of the same density: the impedances have the ratio
+   1000. Of a pulse in the soft half R = 999/1001 = .99800 of the stress returns, and 1.99800 goes
+   on, to 1 %; the end of the stiff half absorbs it. The functions of the total frame are linear, so
+   that nothing is smeared but one cell.
 ------------------------------------------------------------------------- */
 
 static constexpr double H = 0.1, SOFT = 1.0, STIFF = 1.0e6;
@@ -43,7 +44,8 @@ TEST(StiffnessRatio, PulseReturns)
   run.set_velocity([&](const double *x, double *v) {
     v[0] = 2.0 * (x[0] < soft ? shape(x[0]) : 0.0);
   });
-  // from rest two pulses of half of this go both ways; the left one returns from the free end with the other sign
+  // from rest two pulses of half of this go both ways; the left one returns from the free end with
+  // the other sign
   run.each_step([&](double **force) {
     double stress = 0.0, n = 0.0;
     for (int i = 0; i < run.n(); i++) {
@@ -55,7 +57,8 @@ TEST(StiffnessRatio, PulseReturns)
     }
     if (run.time() < soft) peak = std::max(peak, stress / n);
   });
-  // momentum of the soft half when the right pulse, A width sqrt(2 pi) H, has returned, the other one as well
+  // momentum of the soft half when the right pulse, A width sqrt(2 pi) H, has returned, the other
+  // one as well
   const double impulse = A * width * sqrt(2.0 * PI) * H;
   EXPECT_NEAR(run.sums(1).p[0] / impulse, 2.0, 1.0e-3);
   run.commands(strprintf("run %ld\n", std::lround(soft / run.lmp->update->dt)));
@@ -103,9 +106,10 @@ TEST(StiffnessRatio, TimeStep)
 }
 
 /* ----------------------------------------------------------------------
-   J2: water and a gas of a thousandth of its density, one above the other in a closed column, at rest from the
-   start, in one field. After 1e4 steps: kinetic energy below 1e-4 rho g H^2, pressure of the gas to 5 %, no point of gas
-   faster than sound. The column is one point wide, so that water stays above the gas.
+   J2: water and a gas of a thousandth of its density, one above the other in a closed column, at
+   rest from the start, in one field. After 1e4 steps: kinetic energy below 1e-4 rho g H^2, pressure
+   of the gas to 5 %, no point of gas faster than sound. The column is one point wide, so that water
+   stays above the gas.
 ------------------------------------------------------------------------- */
 
 TEST(DensityRatio, ColumnsAtRest)
@@ -160,11 +164,12 @@ TEST(DensityRatio, ColumnsAtRest)
 }
 
 /* ----------------------------------------------------------------------
-   J2, in motion: a column of water, twice as high as wide, collapses in a closed tank that is full of this gas otherwise. Asked:
-   pressure of the gas to 5 %, momentum to 1e-10, no point of gas faster than sound. The gas weighs so little that water
-   moves as without it. The run ends when the front has gone as far as the column was wide. Later the pressure falls, by 23 % in
-   another 0.8 units of time, as the volumes of points of gas next to water, which moves them whatever their pressure is, drift:
-   together they outgrow the tank.
+   J2, in motion: a column of water, twice as high as wide, collapses in a closed tank that is full
+   of this gas otherwise. Asked: pressure of the gas to 5 %, momentum to 1e-10, no point of gas
+   faster than sound. The gas weighs so little that water moves as without it. The run ends when the
+   front has gone as far as the column was wide. Later the pressure falls, by 23 % in another 0.8
+   units of time, as the volumes of points of gas next to water, which moves them whatever their
+   pressure is, drift: together they outgrow the tank.
 ------------------------------------------------------------------------- */
 
 TEST(DensityRatio, DamBreakUnderGas)

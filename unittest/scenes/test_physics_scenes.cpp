@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -54,9 +54,10 @@ TEST(TaylorBar, OfhcCopper)
 /* ----------------------------------------------------------------------
    H1: dam break (J.C. Martin, W.J. Moyce, Phil. Trans. A 244 (1952) 312), a = 57.15 mm, height 2 a;
    front Z = x/a over T = t sqrt(2 g/a) (table 2), height H over tau = t sqrt(g/a) (table 6).
-   Numerical fronts are earlier than the gate of the experiment: a shift up to 0.2 is allowed. (With 10, 20, 40 cells in a,
-   apic: slope 1.455, 1.401, 1.416; the front at T = 1, 2, 3 is at 1.43, 2.63, 4.10, at 1.51, 2.67, 4.08, and at 1.55, 2.66,
-   4.09: it is late at the start, while it is within one cell of the floor, and right from T = 2 on.)
+   Numerical fronts are earlier than the gate of the experiment: a shift up to 0.2 is allowed. (With
+   10, 20, 40 cells in a, apic: slope 1.455, 1.401, 1.416; the front at T = 1, 2, 3 is at 1.43,
+   2.63, 4.10, at 1.51, 2.67, 4.08, and at 1.55, 2.66, 4.09: it is late at the start, while it is
+   within one cell of the floor, and right from T = 2 on.)
 ------------------------------------------------------------------------- */
 
 PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
@@ -253,15 +254,16 @@ PARAMETER_TEST(GrainOnBlock, Momentum, const char *,
     EXPECT_LT(run.sums(1).p[2], -0.5 * scale);
     const std::string name = strprintf("K1(a) %s%s: ", GetParam(), friction ? ", friction" : "");
     EXPECT_LT(measured(name + "momentum", p), 1.0e-12);
-    // also with tangential forces, whose torque a point takes into its affine field (without: 0.0015);
-    // FLIP does not conserve angular momentum, and in the total frame only affine motion does so
+    // also with tangential forces, whose torque a point takes into its affine field (without:
+    // 0.0015); FLIP does not conserve angular momentum, and in the total frame only affine motion
+    // does so
     measured(name + "angular momentum", L);
     if (name.find("apic") != std::string::npos) {
       EXPECT_LT(L, name.find("total") == std::string::npos ? 1.0e-12 : 4.0e-4);
     }
-    // out of contact there is no energy but that of motion and in the block. FLIP with MUSL keeps it
-    // to first order in the time step; friction takes 7 %. APIC damps the vibrations of this block of
-    // 8 cells.
+    // out of contact there is no energy but that of motion and in the block. FLIP with MUSL keeps
+    // it to first order in the time step; friction takes 7 %. APIC damps the vibrations of this
+    // block of 8 cells.
     double spin = 0.0;
     for (int i = 0; i < run.n(); i++)
       if (run.lmp->atom->type[i] == 2)
@@ -350,9 +352,10 @@ PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
 }
 
 /* ----------------------------------------------------------------------
-   K1(d): a grain rests on a block under gravity for 1e5 steps. Asked: the force is its weight to 1 %, the
-   center of mass does not drift, nothing heats up. It has settled, with viscous friction, before. Flip 1.0 is not
-   here: with musl it gains energy without bound in so many steps (Howto_mpm_stability), and throws the grain.
+   K1(d): a grain rests on a block under gravity for 1e5 steps. Asked: the force is its weight to 1
+   %, the center of mass does not drift, nothing heats up. It has settled, with viscous friction,
+   before. Flip 1.0 is not here: with musl it gains energy without bound in so many steps
+   (Howto_mpm_stability), and throws the grain.
 ------------------------------------------------------------------------- */
 
 TEST(GrainAtRest, HundredThousandSteps)

@@ -1,7 +1,8 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
+
 // labels: physics
 // timeout: 900
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
 
 // Soil in motion: slopes, flow of grains on an incline, collapse of a column.
 
@@ -33,7 +34,8 @@ std::string layer(double depth, double h, int cells, double angle, double ramp,
 
 /* ----------------------------------------------------------------------
    G2: flow with mu(I) on an incline, u(y) = 2/3 I_theta/d sqrt(fraction g cos) (h^1.5 - (h-y)^1.5)
-   (L.E. Silbert et al., Phys. Rev. E 64 (2001) 051302; P. Jop et al., J. Fluid Mech. 541 (2005) 167)
+   (L.E. Silbert et al., Phys. Rev. E 64 (2001) 051302; P. Jop et al., J. Fluid Mech. 541 (2005)
+   167)
 ------------------------------------------------------------------------- */
 
 struct Incline {
@@ -121,12 +123,14 @@ TEST(InfiniteSlope, SlidesWhenTooSteep)
 }
 
 /* ----------------------------------------------------------------------
-   The acceleration of such a layer. On a floor with friction mu: g (sin - mu cos), whatever the transfer. On a rough floor the
-   layer slides in the material: mu = sin(phi). The strength is reached at all depths at once, so that only the mean velocity
-   is determined, by the force at the floor, and it is a small difference: 1 % of the force is 4 % of the acceleration.
-   Shape functions cannot follow the jump of velocity at the floor: up to half a cell stays behind with it, h/(2 depth) of the mean. What
-   transfers take at the jump comes on top: apic is 20 % too slow with 10 cells in the depth and 12 % with 20 (and more with smaller
-   time steps), which is why it is not here: its error, of first order in h as well, is that of a viscosity.
+   The acceleration of such a layer. On a floor with friction mu: g (sin - mu cos), whatever the
+   transfer. On a rough floor the layer slides in the material: mu = sin(phi). The strength is
+   reached at all depths at once, so that only the mean velocity is determined, by the force at the
+   floor, and it is a small difference: 1 % of the force is 4 % of the acceleration. Shape functions
+   cannot follow the jump of velocity at the floor: up to half a cell stays behind with it, h/(2
+   depth) of the mean. What transfers take at the jump comes on top: apic is 20 % too slow with 10
+   cells in the depth and 12 % with 20 (and more with smaller time steps), which is why it is not
+   here: its error, of first order in h as well, is that of a viscosity.
 ------------------------------------------------------------------------- */
 
 double slide(double h, double angle, const std::string &options, const std::string &floor)
@@ -204,9 +208,10 @@ TEST(ColumnCollapse, RunOut)
 }
 
 /* ----------------------------------------------------------------------
-   Transfers with an affine matrix create no energy at rough walls. The matrix of a single grain near
-   the floor and its velocity are together projected on the fields that vanish there, v + C d = 0 with
-   the distance d down to the floor: with the kinetic energy v^2 + D C^2 that leaves v s/(1 + s), s = d^2/D.
+   Transfers with an affine matrix create no energy at rough walls. The matrix of a single grain
+   near the floor and its velocity are together projected on the fields that vanish there, v + C d =
+   0 with the distance d down to the floor: with the kinetic energy v^2 + D C^2 that leaves v s/(1 +
+   s), s = d^2/D.
 ------------------------------------------------------------------------- */
 
 TEST(RoughFloor, StopsAGrain)

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics smoke
 // mpi: 1 2 4
@@ -408,8 +408,8 @@ PARAMETER_TEST(MuslApic, ShearedBlockGainsNoEnergy, std::string,
   EXPECT_LT(most, 1.002 * start);
 }
 
-// points that cross their block without leaving its tile, while neighbor lists are not made, came to
-// reach into a block that did not exist
+// points that cross their block without leaving its tile, while neighbor lists are not made, came
+// to reach into a block that did not exist
 TEST(Pitfall, LongDriftWithinATile)
 {
   for (const int dim : {2, 3}) {

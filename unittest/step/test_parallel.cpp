@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: mpi physics ranks
 // mpi: 1 2 3 4
@@ -181,8 +181,9 @@ PARAMETER_TEST(Walls, ReactionsAndEnergiesAgree, std::string,
   }
 }
 
-// A bar across all ranks, at rest. Points next to a border at x = 8k reach the nodes 8k-1, 8k, 8k+1 of both ranks, and in the
-// plane of the border 7x7 nodes. Blocks next to a wall are sent as a whole
+// A bar across all ranks, at rest. Points next to a border at x = 8k reach the nodes 8k-1, 8k, 8k+1
+// of both ranks, and in the plane of the border 7x7 nodes. Blocks next to a wall are sent as a
+// whole
 TEST(Halo, SendsNodesThatPointsOfBothRanksReach)
 {
   const std::string n = std::to_string(nranks());
@@ -214,8 +215,8 @@ TEST(Halo, SendsNodesThatPointsOfBothRanksReach)
   }
 }
 
-// A wall pairs nodes on its two sides, and a cut cell those of several planes: with a border of ranks two cells above it a
-// rank needs nodes that only the other's points reach
+// A wall pairs nodes on its two sides, and a cut cell those of several planes: with a border of
+// ranks two cells above it a rank needs nodes that only the other's points reach
 PARAMETER_TEST(HaloWalls, BelowABorder, std::string,
                Values("slip", "stick", "slip friction 0.3", "separate"))
 {

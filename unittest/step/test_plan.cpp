@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: smoke
 // mpi: 1
 
-// Each stage of a step says what it reads and writes. It writes nothing else, and what it reads at nodes was
-// written before.
+// Each stage of a step says what it reads and writes. It writes nothing else, and what it reads at
+// nodes was written before.
 
 #include "mpm_lammps.h"
 

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: restart smoke ranks
 // mpi: 1 2 3
@@ -64,8 +64,8 @@ PARAMETER_TEST(Restart, ContinuesBitwise, std::string,
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
 }
 
-// the write_restart command between runs, and a file of one rank read by many; sums that were begun before have the same
-// digits, too
+// the write_restart command between runs, and a file of one rank read by many; sums that were begun
+// before have the same digits, too
 PARAMETER_TEST(RestartCommand, ContinuesBitwiseAndOnOtherRanks, std::string,
                Values("transfer apic", "shape cubic transfer flip 1.0 scheme usf"))
 {
@@ -136,8 +136,8 @@ TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
   }
 }
 
-/* Read_restart sets the skin to the default of the units of the file where they were others before: neighbor
-   lists are made at other steps then, and sums have another order. */
+/* Read_restart sets the skin to the default of the units of the file where they were others before:
+   neighbor lists are made at other steps then, and sums have another order. */
 TEST(RestartState, LostSkinHasAWarning)
 {
   const std::string more = "neighbor 0.3 bin\n", si = replaced(head, "units lj", "units si") + more;
@@ -255,8 +255,8 @@ TEST(RestartState, NewVelocitiesAreSeen)
   }
 }
 
-// what was changed before the file is written counts like a change without a file: the next run sets its
-// time step anew
+// what was changed before the file is written counts like a change without a file: the next run
+// sets its time step anew
 TEST(RestartState, TimeStepIsThatWithoutTheFile)
 {
   const ScratchFile file("dt");

@@ -1,12 +1,13 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 600
 
-// B2, the generalized vortex (K. Kamojjala, R. Brannon, A. Sadeghirad, J. Guilkey, Eng. Comput. 31 (2015)
-// 269): a ring, 0.75 < R < 1.25, that is swirled by alpha = g(t) s(R), g = G (1 - cos 2 pi t)/2, with exact
-// forces at the reference positions. G = 1 is a shear of 6.2, which tears bodies in the updated frame.
+// B2, the generalized vortex (K. Kamojjala, R. Brannon, A. Sadeghirad, J. Guilkey, Eng. Comput. 31
+// (2015) 269): a ring, 0.75 < R < 1.25, that is swirled by alpha = g(t) s(R), g = G (1 - cos 2 pi
+// t)/2, with exact forces at the reference positions. G = 1 is a shear of 6.2, which tears bodies
+// in the updated frame.
 
 #include "mpm_lammps.h"
 
@@ -20,7 +21,8 @@ struct Swirl {
       spin;    // angular momentum at the end, where it is 0, over the largest of the exact motion
 };
 
-/** n cells across the ring. volume: of domains, and of points by J, where the ring is turned most. */
+/** n cells across the ring. volume: of domains, and of points by J, where the ring is turned
+ *  most. */
 static Swirl vortex(const std::string &options, int n, double G, double *volume = nullptr)
 {
   const double h = 0.5 / n, c2 = 1.0 / 2.6, w = 2.0 * PI, dt = 0.2 * h / 5.06;
@@ -92,11 +94,12 @@ struct VortexCase {
   friend void PrintTo(const VortexCase &c, std::ostream *out) { *out << c.options; }
 };
 
-// asked: G = 0.1, updated frame: order 1.6, 2.5e-3 with 20 cells; G = 1, total frame and CPDI: order 1.8; and
-// less than 1 % of the angular momentum at the end, where it is 0. The forces themselves, sampled by an array of
-// points with steps at its rims, leave 1.5 % of it with 20 cells: what is asked is therefore asked of the rest, and
-// of APIC in the updated frame, which conserves it, to round-off. The first steps, from 5 to 10 cells, are not of any order yet:
-// 1.5 (APIC) and 1.1 (APIC, total frame) by the other code.
+// asked: G = 0.1, updated frame: order 1.6, 2.5e-3 with 20 cells; G = 1, total frame and CPDI:
+// order 1.8; and less than 1 % of the angular momentum at the end, where it is 0. The forces
+// themselves, sampled by an array of points with steps at its rims, leave 1.5 % of it with 20
+// cells: what is asked is therefore asked of the rest, and of APIC in the updated frame, which
+// conserves it, to round-off. The first steps, from 5 to 10 cells, are not of any order yet: 1.5
+// (APIC) and 1.1 (APIC, total frame) by the other code.
 static const VortexCase vortex_cases[] = {
     {"transfer apic", 0.1, 1.6, {1.94e-2, 6.83e-3, 1.82e-3}},
     {"transfer flip 1.0 scheme musl", 0.1, 1.6, {2.83e-2, 6.94e-3, 1.98e-3}},

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi
 // mpi: 1 2 4
@@ -60,8 +60,8 @@ std::vector<Scene::State> after_a_step_on_the_floor(Scene &run)
   return found;
 }
 
-/** Linear in the distance from a wall at y = 0 that has the velocity V; the components that are free
- *  there have any value. */
+/** Linear in the distance from a wall at y = 0 that has the velocity V; the components that are
+ *  free there have any value. */
 constexpr double ACROSS[3] = {0.7, -0.4, 0.25};
 auto shear(const double *V, bool stick)
 {
@@ -199,9 +199,9 @@ static const CutCase cut_face_cases[] = {
 INSTANTIATE_TEST_SUITE_P(Kinds, CutFace, ValuesIn(cut_face_cases));
 
 /* ----------------------------------------------------------------------
-   The lowest points are at the very end of the function of the outermost node at a face between nodes,
-   as those of ppc 1 and 3 can be at the start of a run. Its mass is 1e-30 of that of its neighbors, or
-   nothing, with other digits for other kernels; the material must not feel which.
+   The lowest points are at the very end of the function of the outermost node at a face between
+   nodes, as those of ppc 1 and 3 can be at the start of a run. Its mass is 1e-30 of that of its
+   neighbors, or nothing, with other digits for other kernels; the material must not feel which.
 ------------------------------------------------------------------------- */
 
 struct EndCase {
@@ -370,8 +370,8 @@ TEST(Work, LedgerAndRestart)
     EXPECT_EQ(fix->compute_vector(0), 0.0);
     EXPECT_NEAR(fix->compute_scalar(), p * V, 1.0e-12);    // a wall at rest does no work
 
-    // the ledger: nodes lose as in an inelastic collision, what meets its image with its reduced mass;
-    // there was no stress, so that only the wall and the transfers have changed the energy
+    // the ledger: nodes lose as in an inelastic collision, what meets its image with its reduced
+    // mass; there was no stress, so that only the wall and the transfers have changed the energy
     const double start = 0.5 * 64.0 * 0.25;
     const double loss = area * u * u * (0.5 * plane + 2.0 * inside * image / (inside + image));
     double kinetic = 0.0;
@@ -397,8 +397,9 @@ TEST(Work, LedgerAndRestart)
   }
 }
 
-// A wall that is faster in each step works with the mean of its velocities before and after: that is what a body that moves along as a whole gets as
-// kinetic energy, however long the steps are. With the velocity after it, half of m dv^2 would be too much in each step
+// A wall that is faster in each step works with the mean of its velocities before and after: that
+// is what a body that moves along as a whole gets as kinetic energy, however long the steps are.
+// With the velocity after it, half of m dv^2 would be too much in each step
 TEST(Work, OfTheMeanVelocity)
 {
   const char *motions[] = {"stick displacement v_u NULL v_w", "stick velocity v_u v_w NULL",
@@ -444,7 +445,8 @@ TEST(Work, OfTheMeanVelocity)
     }
 }
 
-// Ground shaken from below, away from its resonance: what the base has worked is what the ground has, with what is lost on the way
+// Ground shaken from below, away from its resonance: what the base has worked is what the ground
+// has, with what is lost on the way
 TEST(Work, OfAShakenBase)
 {
   for (const double dt : {0.1, 0.4}) {
@@ -551,7 +553,8 @@ TEST_P(Separate, ABodyThatLeavesFeelsNothing)
 {
   const std::string spread = "velocity all ramp vy 0.0 0.2 y 0 0.4 sum yes\nrun 100\n";
   Scene with(scene(0.0, "fix w all mpm/boundary ylo separate friction 0.5", 1.0) + spread);
-  // a wall that is out of reach: with musl, points of fields that have a separating wall move otherwise
+  // a wall that is out of reach: with musl, points of fields that have a separating wall move
+  // otherwise
   Scene without(scene(0.0, "fix w all mpm/boundary yhi separate", 1.0) + spread);
   EXPECT_LT(difference(with.gather(), without.gather()), 1.0e-13);
   EXPECT_EQ(with.fix("w")->compute_scalar(), 0.0);
@@ -630,8 +633,8 @@ PARAMETER_TEST(Column, SettlementAndPeriod, std::string,
   }
 
   // in the mean that at rest: sigma_y = -rho g Y below the surface, sigma_x = nu/(1 - nu) sigma_y
-  // faces through cells cost accuracy next to them: single points are wrong by up to 2 % of the stress
-  // at the floor with faces on nodes, by up to 5 % without
+  // faces through cells cost accuracy next to them: single points are wrong by up to 2 % of the
+  // stress at the floor with faces on nodes, by up to 5 % without
   const bool off = GetParam().find("origin") != std::string::npos;
   double square = 0.0;
   for (size_t i = 0; i < start.size(); i++) {
@@ -726,7 +729,8 @@ TEST(Rotation, AFullTurnKeepsTheRadius)
   EXPECT_LT(measured("drift of the position", off), 1.0e-10);
 }
 
-// the same in the total frame, whose nodes know the material and not where it is, about an axis that moves along
+// the same in the total frame, whose nodes know the material and not where it is, about an axis
+// that moves along
 TEST(Rotation, TotalFrame)
 {
   for (const char *options : {"", "scheme musl transfer flip 0.9 shape linear"}) {
@@ -747,7 +751,8 @@ TEST(Rotation, TotalFrame)
     run.commands("run 150\n");
     const auto after = run.gather();
     ASSERT_EQ(before.size(), after.size());
-    // after a turn all points have the same displacement: that of the motion x' = u' + w x (x - o) from x = 0 on
+    // after a turn all points have the same displacement: that of the motion x' = u' + w x (x - o)
+    // from x = 0 on
     double off = 0.0;
     for (std::size_t k = 0; k < after.size(); k++)
       for (int d = 0; d < 3; d++)
@@ -757,7 +762,8 @@ TEST(Rotation, TotalFrame)
   }
 }
 
-// displacement by a variable is exact at the end of each step, also when that changes, in both frames
+// displacement by a variable is exact at the end of each step, also when that changes, in both
+// frames
 TEST(Motion, Displacement)
 {
   for (const char *frame : {"updated", "total"}) {
@@ -779,7 +785,8 @@ TEST(Motion, Displacement)
       EXPECT_NEAR(after[k].x[1] - before[k].x[1], 0.0, 1e-11);
       EXPECT_NEAR(after[k].x[2] - before[k].x[2], -0.2 * t * t, 1e-11);
     }
-    // reaction: mass times acceleration, of the means over the last two steps; work: what the ledger has
+    // reaction: mass times acceleration, of the means over the last two steps; work: what the
+    // ledger has
     const double dt = 0.031, u[3] = {sin(2 * t), sin(2 * (t - dt)), sin(2 * (t - 2 * dt))};
     EXPECT_NEAR(run.fix_vector("w", 6)[0], -8.0 * 0.5 * (u[0] - 2 * u[1] + u[2]) / (dt * dt), 1e-9);
     EXPECT_NEAR(run.fix_vector("w", 6)[2], 8.0 * 0.4, 1e-9);
@@ -795,7 +802,8 @@ TEST(Motion, Displacement)
   }
 }
 
-// a bar is twisted by the motion of its end, given in three ways: the same torque, that of the theory, and its work is what the bar stores
+// a bar is twisted by the motion of its end, given in three ways: the same torque, that of the
+// theory, and its work is what the bar stores
 TEST(Torsion, ReactionAndWork)
 {
   LONG_CASE();
@@ -875,8 +883,9 @@ TEST(Motion, FlipFollowsTheWalls)
   }
 }
 
-// FLIP: of the old velocities at the wall relative to it, those of the nodes in its plane and the odd part of
-// those of nodes and their images are taken away, but for what is above that of the first node inside
+// FLIP: of the old velocities at the wall relative to it, those of the nodes in its plane and the
+// odd part of those of nodes and their images are taken away, but for what is above that of the
+// first node inside
 TEST(Motion, FlipTakesAsMuchOfTheOldVelocityAsTheFirstNodeInsideHas)
 {
   for (const int order : {2, 3})
@@ -932,9 +941,10 @@ TEST(Motion, FlipTakesAsMuchOfTheOldVelocityAsTheFirstNodeInsideHas)
       }
 }
 
-// The same at a face between planes of nodes: what material brings along beyond the first nodes inside is lost at
-// once, while a uniform strain, which a vibration may well have, stays. (Without forces the velocities of nodes
-// before and after the step are the same, and so would be those of points.)
+// The same at a face between planes of nodes: what material brings along beyond the first nodes
+// inside is lost at once, while a uniform strain, which a vibration may well have, stays. (Without
+// forces the velocities of nodes before and after the step are the same, and so would be those of
+// points.)
 TEST(Motion, FlipTakesFromTheOldVelocityAtACutFace)
 {
   for (const bool arrives : {false, true}) {
@@ -965,8 +975,8 @@ TEST(Motion, FlipTakesFromTheOldVelocityAtACutFace)
   }
 }
 
-// FLIP: a block that is thrown at a wall returns with its speed (0.59 of it with an update as in PIC
-// at the wall)
+// FLIP: a block that is thrown at a wall returns with its speed (0.59 of it with an update as in
+// PIC at the wall)
 TEST(Rebound, FlipKeepsTheEnergy)
 {
   if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
@@ -1042,8 +1052,8 @@ TEST(Motion, PistonOfChangingShape)
   EXPECT_NEAR(run.fix("w")->compute_scalar(), -0.1 * 16.0 * v, 1.0e-6);
 }
 
-// a ball that moves and grows: its surface has the velocity of its center, and the rate of its radius along
-// the normal
+// a ball that moves and grows: its surface has the velocity of its center, and the rate of its
+// radius along the normal
 TEST(Motion, BallThatMovesAndGrows)
 {
   const double dt = 1.0e-4, center[3] = {5.1, 4.9, 5.2}, V[3] = {0.5, 0.0, -0.3}, rate = 0.4;
@@ -1151,7 +1161,8 @@ TEST(Regions, SlipNormals)
 }
 
 namespace {
-/** A block, 1 x 1, whose side is at a wall that is this many node spacings from a node, pulled normal to or along the wall. */
+/** A block, 1 x 1, whose side is at a wall that is this many node spacings from a node, pulled
+ *  normal to or along the wall. */
 struct Pulled {
   std::vector<Scene::State> points;
   double force;
@@ -1183,8 +1194,9 @@ Pulled pull_at_wall(bool face, const std::string &kind, double h, double off, bo
   return {run.gather(), run.evaluate("f_w[1]")};
 }
 
-// A region with slip or stick holds the surface of a body as a face of the box does, wherever both are between nodes: stresses were wrong by up
-// to seven times the pull when nodes inside the region acted one by one
+// A region with slip or stick holds the surface of a body as a face of the box does, wherever both
+// are between nodes: stresses were wrong by up to seven times the pull when nodes inside the region
+// acted one by one
 void compare_with_faces(const std::string &kind)
 {
   const std::string at_rest = "fix solve all mpm/implicit static\ntimestep 1\nrun 2\n",
@@ -1220,7 +1232,8 @@ void compare_with_faces(const std::string &kind)
         EXPECT_GT(largest, 0.5);
         EXPECT_LT(different, 1e-6);
         EXPECT_NEAR(region.force, face.force, 1e-6);
-        // the sum of forces times places is volume times mean stress: that of the wall has no lever arm about its surface
+        // the sum of forces times places is volume times mean stress: that of the wall has no lever
+        // arm about its surface
         double sum = 0.0;
         for (const auto &point : region.points) sum += point.stress[along] / region.points.size();
         if (c.solve == at_rest) {
@@ -1242,9 +1255,10 @@ SERIAL_TEST(Regions, StickIsThatOfFaces)
   compare_with_faces("stick");
 }
 
-// A ring on a smooth shaft, pressed on it by forces toward its center: the stress at the shaft is the same all around. With nodes inside its error was 1.2
-// in the root mean square, and as much with half the spacing. Where lines along both axes meet they act together, also in implicit steps, which
-// need projections; there is no torque
+// A ring on a smooth shaft, pressed on it by forces toward its center: the stress at the shaft is
+// the same all around. With nodes inside its error was 1.2 in the root mean square, and as much
+// with half the spacing. Where lines along both axes meet they act together, also in implicit
+// steps, which need projections; there is no torque
 TEST(Regions, RingOnAShaft)
 {
   constexpr double E = 1000.0, nu = 0.3, a = 1.0, b = 2.0;
@@ -1299,9 +1313,10 @@ TEST(Regions, RingOnAShaft)
   }
 }
 
-// A block that slides down a smooth plane, with what damps it: its velocity is that of a point, the force that of its weight normal to the plane, and the
-// stress next to it that of what lies above. At 45 degrees rounding must not decide on the axis of lines: stresses were wrong by 20 times
-// that of the weight. With nodes inside they were wrong by 0.4 to 1.2 times it
+// A block that slides down a smooth plane, with what damps it: its velocity is that of a point, the
+// force that of its weight normal to the plane, and the stress next to it that of what lies above.
+// At 45 degrees rounding must not decide on the axis of lines: stresses were wrong by 20 times that
+// of the weight. With nodes inside they were wrong by 0.4 to 1.2 times it
 TEST(Regions, BlockSlidesDownAPlane)
 {
   constexpr double g = 10.0, height = 0.5, h = 0.125, d = 0.5 * h, damp = 40.0;
@@ -1368,8 +1383,9 @@ TEST(Regions, FastOnesAreReported)
     EXPECT_THAT(text(slow), ::testing::Not(HasSubstr("crosses")));
 }
 
-// A plate that pushes or pulls at a bar while it crosses planes of nodes: nodes inside left the bar with 0.3 to 2.6 times its stress next to the plate,
-// and let go of it after 0.8 of a cell when they pulled
+// A plate that pushes or pulls at a bar while it crosses planes of nodes: nodes inside left the bar
+// with 0.3 to 2.6 times its stress next to the plate, and let go of it after 0.8 of a cell when
+// they pulled
 TEST(Regions, SlipHoldsWhereItMoves)
 {
   if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
@@ -1402,7 +1418,8 @@ TEST(Regions, SlipHoldsWhereItMoves)
     }
 }
 
-// A roller that goes along the surface of a block and into it: ranks need nodes next to it wherever it is, also while no point leaves its neighborhood
+// A roller that goes along the surface of a block and into it: ranks need nodes next to it wherever
+// it is, also while no point leaves its neighborhood
 TEST(Regions, RollerOnRanks)
 {
   const std::string text = plane("lj", "f f", "-14 14 -6 6", 1, 2.0) +
@@ -1447,7 +1464,8 @@ TEST(Regions, NoTrailBehindAMovingBody)
 
 /* ---------------------------------------------------------------------- ranks and restart */
 
-// Distances of a mesh: those of regions in general, and what walls take for material in front of them
+// Distances of a mesh: those of regions in general, and what walls take for material in front of
+// them
 SERIAL_TEST(MeshWall, Distances)
 {
   constexpr int n = 24;
@@ -1700,7 +1718,8 @@ TEST(TimeStep, RestartTakesTheSameSteps)
   }
 }
 
-// also when nothing limits the time step but its largest value, and with points that take every second or third step
+// also when nothing limits the time step but its largest value, and with points that take every
+// second or third step
 TEST(TimeStep, RunsEndAtATime)
 {
   for (const double end : {0.9, 1.0, 1.0123, 0.049, 0.1})
@@ -1729,8 +1748,8 @@ TEST(TimeStep, RunsEndAtATime)
   }
 }
 
-// also when the part before the last ends among the steps that are made to fit; not when one step is left, which is
-// divided for the sake of its output
+// also when the part before the last ends among the steps that are made to fit; not when one step
+// is left, which is divided for the sake of its output
 TEST(TimeStep, PartsOfARunToATimeAreOneRun)
 {
   for (const char *more : {"", " strain 0.002", " every 7 grow 1.001"}) {
@@ -1746,7 +1765,8 @@ TEST(TimeStep, PartsOfARunToATimeAreOneRun)
   }
 }
 
-// output of the last step, which is not a multiple of the interval, with what needs virials; a warning before the end
+// output of the last step, which is not a multiple of the interval, with what needs virials; a
+// warning before the end
 TEST(TimeStep, TellsTheEndOfARun)
 {
   const ScratchFile log("log");
@@ -1872,8 +1892,8 @@ TEST(BadInput, NarrowChannels)
   EXPECT_EQ(error_of(scene + "fix w all mpm/boundary xlo xhi slip\nrun 1\n"), "");
 }
 
-// A region that another command has put elsewhere between runs has not moved there: the wall has the velocity of
-// the motion in the step
+// A region that another command has put elsewhere between runs has not moved there: the wall has
+// the velocity of the motion in the step
 TEST(Regions, ThatAreElsewhereInTheNextRunHaveNotMovedThere)
 {
   Scene run(space("lj", "p p f", "0 4 0 4 0 8") +
@@ -1891,8 +1911,8 @@ TEST(Regions, ThatAreElsewhereInTheNextRunHaveNotMovedThere)
   EXPECT_GT(held, 32);
 }
 
-// The edge of a wedge is a single point in front of many: by their mean distance the wall is far away. It must
-// not get through; at rest it is half a spacing of the points from the surface, 5 mm.
+// The edge of a wedge is a single point in front of many: by their mean distance the wall is far
+// away. It must not get through; at rest it is half a spacing of the points from the surface, 5 mm.
 
 SERIAL_TEST(SeparatingWall, TheEdgeOfAWedgeDoesNotCross)
 {
@@ -1917,10 +1937,10 @@ SERIAL_TEST(SeparatingWall, TheEdgeOfAWedgeDoesNotCross)
 }
 
 /* ----------------------------------------------------------------------
-   A block falls on a plate that lies on a plane of symmetry, and its image from the other side. With the
-   plane as a wall there is only one half, and contact has to know that the wall holds the nodes next to
-   it together with their images: the plate is half a cell or one cell thick. What is left of the difference
-   is the volume of nodes, of which the half has a part outside of the box.
+   A block falls on a plate that lies on a plane of symmetry, and its image from the other side.
+   With the plane as a wall there is only one half, and contact has to know that the wall holds the
+   nodes next to it together with their images: the plate is half a cell or one cell thick. What is
+   left of the difference is the volume of nodes, of which the half has a part outside of the box.
 ------------------------------------------------------------------------- */
 
 static double impulse_on_block(bool half, double thick, const char *transfer)

@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi ranks
 // mpi: 1 4
 // timeout: 300
 
-// Walls that move, in each way in which they can: what they tell of force, torque, and work is what the material gets.
+// Walls that move, in each way in which they can: what they tell of force, torque, and work is what
+// the material gets.
 
 #include "mpm_lammps.h"
 
@@ -15,8 +16,8 @@ using namespace MPM_TEST;
 
 namespace {
 
-/** What a wall is expected to work: with the velocity V that all of it has, without or with friction, or by its torque
- *  about an axis along z through a point. */
+/** What a wall is expected to work: with the velocity V that all of it has, without or with
+ *  friction, or by its torque about an axis along z through a point. */
 enum Work { TRANSLATES, RUBS, TURNS, OTHER };
 
 struct Motion {
@@ -107,8 +108,9 @@ const Motion motions[] = {
 
 }    // namespace
 
-// Force and torque are the changes of momentum and angular momentum, and work is that of the force along the way of the wall: nothing
-// of this comes from the sums of the fix over nodes. The ledger has the same work, and nothing is left over in it
+// Force and torque are the changes of momentum and angular momentum, and work is that of the force
+// along the way of the wall: nothing of this comes from the sums of the fix over nodes. The ledger
+// has the same work, and nothing is left over in it
 PARAMETER_TEST(Balance, OfMovingWalls, Motion, ValuesIn(motions))
 {
   const auto &c = GetParam();

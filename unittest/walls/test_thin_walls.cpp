@@ -1,13 +1,13 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi
 // mpi: 1 2
 // timeout: 600
 
-// Regions as walls where their other faces are near: plates that are thinner than what nodes see, narrow and
-// short tools; the warning where nodes cannot tell the shape; unions, intersections, and cones with a sharp end; walls
-// that move.
+// Regions as walls where their other faces are near: plates that are thinner than what nodes see,
+// narrow and short tools; the warning where nodes cannot tell the shape; unions, intersections, and
+// cones with a sharp end; walls that move.
 
 #include "mpm_lammps.h"
 
@@ -38,8 +38,9 @@ struct Rest {
   double settled, weight;    // mean over the block; of the force on the plate
 };
 
-/** A block, 1 wide and 0.5 high, at rest on a plate of this thickness, whose upper face is at top, and which reaches
- *  this far beyond the block; in node spacings. The wall: made of the plate by these commands. */
+/** A block, 1 wide and 0.5 high, at rest on a plate of this thickness, whose upper face is at top,
+ *  and which reaches this far beyond the block; in node spacings. The wall: made of the plate by
+ *  these commands. */
 Rest rest(double h, double thickness, double top, double beyond, const std::string &kind,
           const std::string &wall = "", bool moves = false)
 {
@@ -57,9 +58,9 @@ Rest rest(double h, double thickness, double top, double beyond, const std::stri
 }
 }    // namespace
 
-// A block carries its weight, and settles by rho g H^2/3 (1 - nu^2)/E in the mean when it is wide; the thickness of the plate does
-// not matter. Plates thinner than a spacing held nothing when they had no node inside (the block fell), and one of a
-// spacing let it settle by a third more.
+// A block carries its weight, and settles by rho g H^2/3 (1 - nu^2)/E in the mean when it is wide;
+// the thickness of the plate does not matter. Plates thinner than a spacing held nothing when they
+// had no node inside (the block fell), and one of a spacing let it settle by a third more.
 TEST(ThinPlate, CarriesABlock)
 {
   const double exact = 1000 * g * 0.25 / 3.0 * (1.0 - NU * NU) / E;
@@ -100,8 +101,8 @@ TEST(ThinPlate, CarriesABlock)
     }
 }
 
-// What is added far away changes nothing. LAMMPS does not tell the distance from a union: the block fell through
-// the thinnest plate, and settled 20 times as far on the thickest.
+// What is added far away changes nothing. LAMMPS does not tell the distance from a union: the block
+// fell through the thinnest plate, and settled 20 times as far on the thickest.
 TEST(ThinPlate, IsTheSameInAUnion)
 {
   const std::string far = "region far block -9 -8 -9 -8 INF INF\n";
@@ -120,7 +121,8 @@ TEST(ThinPlate, IsTheSameInAUnion)
     }
 }
 
-// A block that is thrown up leaves the plate freely: its other face, with the material behind it, does not act.
+// A block that is thrown up leaves the plate freely: its other face, with the material behind it,
+// does not act.
 TEST(ThinPlate, LetsGo)
 {
   constexpr double h = 0.05;
@@ -137,8 +139,9 @@ TEST(ThinPlate, LetsGo)
 }
 
 namespace {
-/** The force on a punch, 0.2 wide, that is pressed by 0.03 into a block of 2 x 0.5 on a smooth floor: height in node
- *  spacings, where its sides are between nodes, and the place of the surface between nodes. */
+/** The force on a punch, 0.2 wide, that is pressed by 0.03 into a block of 2 x 0.5 on a smooth
+ *  floor: height in node spacings, where its sides are between nodes, and the place of the surface
+ *  between nodes. */
 double punch(double h, double height, double side, double surface, const std::string &more = "")
 {
   const double top = 0.5 + surface * h, x = 1.0 + side * h;
@@ -153,8 +156,8 @@ double punch(double h, double height, double side, double surface, const std::st
 }
 }    // namespace
 
-// How high the punch is does not matter, and not much where it is between the nodes. Before, these had 19 to -1 % of the
-// force of a high one, which itself had 80 % of it.
+// How high the punch is does not matter, and not much where it is between the nodes. Before, these
+// had 19 to -1 % of the force of a high one, which itself had 80 % of it.
 TEST(Punch, HeightDoesNotMatter)
 {
   const double high = measured("punch, high", punch(0.05, 10, 0, 0));
@@ -163,7 +166,7 @@ TEST(Punch, HeightDoesNotMatter)
   EXPECT_NEAR(measured("punch, h/2, 1.5 h high", punch(0.025, 1.5, 0, 0.5)) / high, 1.0, 0.1);
 }
 
-/* ---------------------------------------------------------------------- what nodes cannot tell is told */
+/* ------------------------------------------------ what nodes cannot tell is told */
 
 TEST(ThinRegions, AreReported)
 {
@@ -269,8 +272,8 @@ std::vector<std::string> warnings_of(const std::string &region, const std::strin
 }
 }    // namespace
 
-// Once for all ranks, and with the same place: a blade below the last of two ranks was reported by this one alone, not in
-// the log file, and a plate on two ranks twice
+// Once for all ranks, and with the same place: a blade below the last of two ranks was reported by
+// this one alone, not in the log file, and a plate on two ranks twice
 TEST(ThinRegions, AreReportedOnce)
 {
   for (const char *ranks : {"* 1 1", "1 * 1"}) {
@@ -293,7 +296,8 @@ TEST(ThinRegions, AreReportedOnce)
   }
 }
 
-// Another body is below the plate, next to it: lines hold the body on it, unless they see both bodies
+// Another body is below the plate, next to it: lines hold the body on it, unless they see both
+// bodies
 TEST(ThinRegions, AreReportedWithWhatOtherRanksHave)
 {
   for (const std::string kind : {"stick", "slip"})
@@ -318,7 +322,7 @@ TEST(ThinRegions, ThatMoveAreReportedInShortRuns)
   }
 }
 
-/* ---------------------------------------------------------------------- unions, intersections, cones */
+/* ------------------------------------------------ unions, intersections, cones */
 
 namespace {
 /** The surface of the region "it" at places in and around a box from -2 to 2. */
@@ -367,7 +371,8 @@ double tip(const double *x)
 }
 }    // namespace
 
-// Where the nearest surface is that of one part, and it has nothing to do with others, distances are exact
+// Where the nearest surface is that of one part, and it has nothing to do with others, distances
+// are exact
 TEST(Surfaces, OfUnionsAndIntersections)
 {
   const std::string balls = "region a sphere -0.5 0 0 1\nregion b sphere 0.5 0 0 1.1\n";
@@ -448,8 +453,9 @@ TEST(Surfaces, OfSharpCones)
   }
 }
 
-// In front of a smooth surface, the normal is the gradient of the distance. Where places on several faces are as near, it
-// points to none of them: on the axis of a cylinder, and at the same distance from two faces inside.
+// In front of a smooth surface, the normal is the gradient of the distance. Where places on several
+// faces are as near, it points to none of them: on the axis of a cylinder, and at the same distance
+// from two faces inside.
 TEST(Surfaces, Normals)
 {
   constexpr double STEP = 1.0e-5;
@@ -495,7 +501,8 @@ TEST(Surfaces, Normals)
   EXPECT_NEAR(corner[1], std::sqrt(0.5), 1.0e-9);
 }
 
-// LAMMPS divides zero by zero for a cone with a radius of zero at an end. A cone with a tiny one is the same wall.
+// LAMMPS divides zero by zero for a cone with a radius of zero at an end. A cone with a tiny one is
+// the same wall.
 TEST(Cones, SharpEnds)
 {
   const auto speeds = [](const std::string &cone, const std::string &kind) {
@@ -526,8 +533,8 @@ TEST(Cones, SharpEnds)
 }
 
 namespace {
-/** Forces on a separating wall "wall" in each second step, when a body of 6 x 6 x 4 cells moves up to it, 0.6 cells in all after
- *  it touches what begins at z = 5. */
+/** Forces on a separating wall "wall" in each second step, when a body of 6 x 6 x 4 cells moves up
+ *  to it, 0.6 cells in all after it touches what begins at z = 5. */
 std::vector<double> forces_of_impact(const std::string &wall)
 {
   Scene run(space("lj", "f f f", "0 10 0 10 0 10") +
@@ -596,8 +603,9 @@ TEST(Unions, In3d)
 /* ---------------------------------------------------------------------- walls that move */
 
 namespace {
-/** The way of a block, 0.8 x 0.3, along a wall with slip and friction 0.3 in 0.3 s, when gravity is at 30 degrees to it;
- *  the wall moves with this velocity, the block has the velocity of the last one at first. */
+/** The way of a block, 0.8 x 0.3, along a wall with slip and friction 0.3 in 0.3 s, when gravity is
+ *  at 30 degrees to it; the wall moves with this velocity, the block has the velocity of the last
+ *  one at first. */
 double way(double h, double top, const double *wall, const double *first)
 {
   const std::string friction = "fix w all mpm/boundary region wall slip friction ";
@@ -624,9 +632,10 @@ double way(double h, double top, const double *wall, const double *first)
 }
 }    // namespace
 
-// The block starts to slide when the wave of shear has the stress of friction (see test_wall_rolling.cpp); on a belt that is
-// faster than it, friction is along its motion. Where nodes inside acted, the block on the wall that moves with it was 14 %
-// too slow, and that on the belt 6 % too fast.
+// The block starts to slide when the wave of shear has the stress of friction (see
+// test_wall_rolling.cpp); on a belt that is faster than it, friction is along its motion. Where
+// nodes inside acted, the block on the wall that moves with it was 14 % too slow, and that on the
+// belt 6 % too fast.
 TEST(MovingWall, BlocksSlide)
 {
   const double c = std::sqrt(1.5e6 / 1000), gt = g * 0.5, f = 0.3 * g * std::cos(M_PI / 6),

@@ -1,17 +1,18 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi
 // mpi: 1 2
 // timeout: 900
 
-// Elastic disks and spheres that roll or slip on walls that separate, with Coulomb friction. A rigid one
-// (disk: k = 1/2, sphere: 2/5) rolls when tan(theta) <= mu (1 + 1/k), with a = g sin/(1 + k); else a =
-// g (sin - mu cos) and alpha R = mu g cos/k. In place of the plane gravity is tilted.
+// Elastic disks and spheres that roll or slip on walls that separate, with Coulomb friction. A
+// rigid one (disk: k = 1/2, sphere: 2/5) rolls when tan(theta) <= mu (1 + 1/k), with a = g sin/(1 +
+// k); else a = g (sin - mu cos) and alpha R = mu g cos/k. In place of the plane gravity is tilted.
 //
-// A disk cut out of a lattice of points is a polygon: its lowest row is 3.6 h long. It jumps from edge to
-// edge, and where nearly all of the friction is needed (60 degrees) every jump makes it slip. Disks of
-// points in rings, settled on the wall before they are let go, are round: the error of the wall is seen.
+// A disk cut out of a lattice of points is a polygon: its lowest row is 3.6 h long. It jumps from
+// edge to edge, and where nearly all of the friction is needed (60 degrees) every jump makes it
+// slip. Disks of points in rings, settled on the wall before they are let go, are round: the error
+// of the wall is seen.
 
 #include "mpm_lammps.h"
 
@@ -32,8 +33,8 @@ struct Motion {
   double offset;       // slipping: of the normal force from the center of the body
 };
 
-/** wall: its fix, with friction MU and any region; turned: angle between plane and lattice (2d), whose
- *  surface then goes through (0.75, 2). */
+/** wall: its fix, with friction MU and any region; turned: angle between plane and lattice (2d),
+ *  whose surface then goes through (0.75, 2). */
 Motion roll(const Incline &incline, double h, const std::string &wall, int dim = 2,
             double turned = 0.0)
 {
@@ -126,7 +127,8 @@ SERIAL_TEST(RollingSphere, OnAFace)
 
 namespace {
 
-/** Points in n/2 rings, n of them along the diameter: squares of the same area around each, as a mesh. */
+/** Points in n/2 rings, n of them along the diameter: squares of the same area around each, as a
+ *  mesh. */
 std::string rings(const double *center, int n)
 {
   std::vector<std::array<double, 2>> points;
@@ -162,8 +164,8 @@ struct Wall {
   double velocity[2] = {0.0, 0.0};
 };
 
-/** The round disk settles, damped, without friction, and is let go on the incline. contact: on a plate that is
- *  a body. */
+/** The round disk settles, damped, without friction, and is let go on the incline. contact: on a
+ *  plate that is a body. */
 Motion roll_round(const Incline &incline, double h, const Wall &wall, bool contact = false)
 {
   const double theta = incline.theta * M_PI / 180, turn = wall.turned * M_PI / 180;
@@ -270,8 +272,9 @@ std::string turned_plane(double turned, double height, const std::string &motion
       motion;
 }
 
-/** The benchmark asks for the way. What friction there was follows from it, and with the spin the place of the
- *  normal force, which must act below the center as well as nodes can tell: k alpha R^2 = f R - N offset. */
+/** The benchmark asks for the way. What friction there was follows from it, and with the spin the
+ *  place of the normal force, which must act below the center as well as nodes can tell: k alpha
+ *  R^2 = f R - N offset. */
 void expect_round(const Incline &incline, const Motion &m, const std::string &wall, double h)
 {
   const std::string name =
@@ -329,8 +332,8 @@ SERIAL_TEST(RollingSphere, OnATurnedPlane)
 
 namespace {
 
-/** The way along the wall in this time from rest, of a body that has settled, damped, without friction. begin: field,
- *  body, and material. */
+/** The way along the wall in this time from rest, of a body that has settled, damped, without
+ *  friction. begin: field, body, and material. */
 double way_from_rest(const std::string &begin, int dim, const Incline &incline, double h,
                      const Wall &wall, const std::string &kind, double time)
 {
@@ -359,8 +362,9 @@ double way_from_rest(const std::string &begin, int dim, const Incline &incline, 
   return run.variable("x") - x0;
 }
 
-/** Of an elastic block of this height and shear wave speed whose foot sticks until the wave that it sends has the
- *  stress of friction: this grows with the time, density c g sin t, up to mu density g height cos. */
+/** Of an elastic block of this height and shear wave speed whose foot sticks until the wave that it
+ *  sends has the stress of friction: this grows with the time, density c g sin t, up to mu density
+ *  g height cos. */
 double way_of_block(const Incline &incline, double height, double c, double time)
 {
   const double theta = incline.theta * M_PI / 180, gt = g * std::sin(theta),
@@ -368,8 +372,8 @@ double way_of_block(const Incline &incline, double height, double c, double time
   return 0.5 * (gt - f) * time * time + 0.5 * f * sticks * time - f * sticks * sticks / 6.0;
 }
 
-/** A block, 0.8 wide and 0.3 high, of a material that damps its vibrations: without, it is the block that is measured,
- *  which begins to hop or, with slip, to brake by itself. */
+/** A block, 0.8 wide and 0.3 high, of a material that damps its vibrations: without, it is the
+ *  block that is measured, which begins to hop or, with slip, to brake by itself. */
 double expect_block(const Incline &incline, double h, const Wall &wall, const std::string &kind)
 {
   constexpr double height = 0.3, time = 0.4;

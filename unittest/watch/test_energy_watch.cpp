@@ -1,10 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
 
-// Keyword gain of fix mpm: energy that no work explains is told, and energy that work explains is not.
+// Keyword gain of fix mpm: energy that no work explains is told, and energy that work explains is
+// not.
 
 #include "bad_input_testing.h"
 #include "meshgrid/mesh_grid_testing.h"
@@ -19,7 +20,8 @@ using namespace MPM_TEST;
 
 namespace {
 
-/** A block that moves through a periodic box, and gets a part of its kinetic energy out of nothing. */
+/** A block that moves through a periodic box, and gets a part of its kinetic energy out of
+ *  nothing. */
 std::string drift(const char *gain)
 {
   return space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
@@ -73,8 +75,10 @@ TEST(EnergyWatch, TellsWhatIsGained)
   EXPECT_EQ(told_by(drift("") + "velocity all set 2 0 0\nrun 400\n").warnings, 0);
 }
 
-// A block of 4 by 6 cells swings on a floor between planes of nodes, which it is put on without its weight, with 30 to 40 steps in a period. Its stored energy at the end of
-// a step, and the kinetic one of the middle, were up to 5 % of the energy in play; also in a run that begins in the middle of a vibration
+// A block of 4 by 6 cells swings on a floor between planes of nodes, which it is put on without its
+// weight, with 30 to 40 steps in a period. Its stored energy at the end of a step, and the kinetic
+// one of the middle, were up to 5 % of the energy in play; also in a run that begins in the middle
+// of a vibration
 TEST(EnergyWatch, VibrationsOfFewStepsAreNoGain)
 {
   struct {
@@ -100,8 +104,9 @@ TEST(EnergyWatch, VibrationsOfFewStepsAreNoGain)
   }
 }
 
-// A wave of 12 cells that starts with velocities alone. The watch took it that there was less stored energy a step before than at the
-// start, where it is zero, which seemed to be a gain of up to 3 %
+// A wave of 12 cells that starts with velocities alone. The watch took it that there was less
+// stored energy a step before than at the start, where it is zero, which seemed to be a gain of up
+// to 3 %
 TEST(EnergyWatch, WavesThatStartWithoutStrainAreNoGain)
 {
   for (const char *transfer : {"flip 1.0", "aflip 1.0", "flip 1.0 scheme musl"})
@@ -178,8 +183,8 @@ TEST(EnergyWatch, StopsWhereAskedTo)
   EXPECT_EQ(goes_on.error(faster(1.05)), "");
 }
 
-// Linear functions with scheme usl amplify round-off at nodes of tiny mass, see Howto_mpm_stability; plasticity
-// keeps the points from being inverted at once
+// Linear functions with scheme usl amplify round-off at nodes of tiny mass, see
+// Howto_mpm_stability; plasticity keeps the points from being inverted at once
 TEST(EnergyWatch, SeesAnUnstableCombination)
 {
   const std::string scene = plane("lj", "p p", "0 12 0 12", 1, 0.5) +
@@ -193,7 +198,8 @@ TEST(EnergyWatch, SeesAnUnstableCombination)
   EXPECT_EQ(stable.error(replaced(scene, "SHAPE", "shape quadratic")), "");
 }
 
-// Friction that holds sand at rest between two walls has work at the nodes next to them that transfers give back
+// Friction that holds sand at rest between two walls has work at the nodes next to them that
+// transfers give back
 TEST(EnergyWatch, IsSilentAtRest)
 {
   const std::string scene = plane("si", "f f", "0 1 0 1", 1, 0.05) +
@@ -204,8 +210,8 @@ TEST(EnergyWatch, IsSilentAtRest)
   EXPECT_EQ(told_by(scene).warnings, 0);
 }
 
-// In a bar at rest as much heat comes in as goes out: its energy changes by the round-off of its heat alone, which is the whole energy in
-// play, and more than that of a body that moves slowly
+// In a bar at rest as much heat comes in as goes out: its energy changes by the round-off of its
+// heat alone, which is the whole energy in play, and more than that of a body that moves slowly
 TEST(EnergyWatch, RoundOffOfHeatIsNoGain)
 {
   const std::string scene = space("si", "f f f", "0 1 0 0.1 0 0.1", 1, 0.05) +
@@ -215,8 +221,8 @@ TEST(EnergyWatch, RoundOffOfHeatIsNoGain)
   EXPECT_EQ(told_by(scene).warnings, 0);
 }
 
-// A load of five steps: a free block has the momentum of all of them, and no energy without work. With the velocities at the start of each
-// step alone, a fifth of its energy would be
+// A load of five steps: a free block has the momentum of all of them, and no energy without work.
+// With the velocities at the start of each step alone, a fifth of its energy would be
 TEST(EnergyWatch, KnowsTheWorkOfAShortLoad)
 {
   Scene run(space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
@@ -254,8 +260,9 @@ void reverse(LAMMPS &lmp)
   for (auto *field : MPMField::all(&lmp)) field->map->valid = false;
 }
 
-/** Energies that the summaries of a wheel tell, whose left half goes up and whose right half goes down under gravity: their
- *  work is as much as its energy within 250 steps. Of 8448 points one in 16 is looked at in a step. */
+/** Energies that the summaries of a wheel tell, whose left half goes up and whose right half goes
+ *  down under gravity: their work is as much as its energy within 250 steps. Of 8448 points one in
+ *  16 is looked at in a step. */
 std::vector<double> told_of_wheel(const std::string &more, bool reversed)
 {
   const ScratchFile file("log");
@@ -281,9 +288,9 @@ std::vector<double> told_of_wheel(const std::string &more, bool reversed)
   return told;
 }
 
-// Where the forces of different points do large work that adds up to little, an estimate that looks at some points twice and at
-// others never is wrong by as much as the energy in play. The turn of a point follows from its ID. Points are sorted where a
-// restart file is written
+// Where the forces of different points do large work that adds up to little, an estimate that looks
+// at some points twice and at others never is wrong by as much as the energy in play. The turn of a
+// point follows from its ID. Points are sorted where a restart file is written
 TEST(EnergyWatch, DoesNotDependOnTheOrderOfPoints)
 {
   const ScratchFile one("restart"), two("restart2");
@@ -300,8 +307,8 @@ TEST(EnergyWatch, DoesNotDependOnTheOrderOfPoints)
   }
 }
 
-// Where the neighbor lists are those of grains and the surface, which are first in memory, most points are not in them. The
-// grain falls like the block and does not meet it
+// Where the neighbor lists are those of grains and the surface, which are first in memory, most
+// points are not in them. The grain falls like the block and does not meet it
 TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
 {
   Scene run(replaced(space("lj", "p p p", "0 24 0 12 0 12", 2, 0.5), "atom_style mpm",
@@ -317,8 +324,9 @@ TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
   EXPECT_NEAR(run.v()[run.n() - 1][0], 3.0, 1e-6);    // g t
 }
 
-// What elements add to the forces on their nodes is the change of their stored energy, and no work from outside. A bar
-// that is let go with v = x and vibrates along its axis, until most of its energy is stored
+// What elements add to the forces on their nodes is the change of their stored energy, and no work
+// from outside. A bar that is let go with v = x and vibrates along its axis, until most of its
+// energy is stored
 TEST(EnergyWatch, KnowsForcesOfElements)
 {
   const ScratchFile mesh("bar.msh", gmsh(QUADS, {8, 1, 0}, [](double x, double y, double) {
@@ -366,9 +374,10 @@ PARAMETER_TEST(EnergyWatchWork, IsNoGain, Work, ValuesIn(works))
   EXPECT_GT(std::abs(over_ranks(moving)), 0.1 * over_ranks(run.n()));    // there was work
 }
 
-// Loads on a part of a bar, of which one end is held: what the watch tells is what the ledger has in transfer and integration, both of
-// which take the work of all loads at the nodes. With the points' own velocities, those of aflip at the end of the bar had 14 % of the
-// energy too little work, and those of flip were 20 % off one way and 8 % the other
+// Loads on a part of a bar, of which one end is held: what the watch tells is what the ledger has
+// in transfer and integration, both of which take the work of all loads at the nodes. With the
+// points' own velocities, those of aflip at the end of the bar had 14 % of the energy too little
+// work, and those of flip were 20 % off one way and 8 % the other
 struct LoadOnABar {
   const char *name, *text;
 };
