@@ -128,11 +128,8 @@ SERIAL_TEST(Coupling, OutOfReachIsNoCoupling)
   EXPECT_TRUE(met);
 }
 
-/* ----------------------------------------------------------------------
-   A block on a plane, on a spring: Coulomb friction takes 2 mu m g/k from the amplitude in each
-   half cycle, whatever the amplitude, and leaves the block within mu m g/k of the rest position.
-------------------------------------------------------------------------- */
-
+// A block on a plane, on a spring: Coulomb friction takes 2 mu m g/k from the amplitude in each
+// half cycle, whatever the amplitude, and leaves the block within mu m g/k of the rest position.
 SERIAL_TEST(Friction, OscillationDecaysLinearly)
 {
   const double mass = 500.0, gravity = 9.81, mu = 0.1, omega = 2.0 * M_PI / 0.4;

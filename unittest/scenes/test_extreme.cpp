@@ -13,12 +13,9 @@
 
 using namespace MPM_TEST;
 
-/* ----------------------------------------------------------------------
-   nodes with next to no mass: a slab with the pressure p = 0.01 K is let go; acoustics gives points
-   the speed p/(rho c) at its faces. They are anywhere in their cell, one layer of points at the
-   distance shift - 1/4 from the face of a cell.
-------------------------------------------------------------------------- */
-
+// nodes with next to no mass: a slab with the pressure p = 0.01 K is let go; acoustics gives points
+// the speed p/(rho c) at its faces. They are anywhere in their cell, one layer of points at the
+// distance shift - 1/4 from the face of a cell.
 static double release(const std::string &options, double shift)
 {
   Scene run;
@@ -238,11 +235,8 @@ TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
   expect_error(scene + "fix grid all mpm 1.0 shape linear light 1.5\n", "within 0 and 1");
 }
 
-/* ----------------------------------------------------------------------
-   points exactly on nodes, at the edge of a body: the next node has no mass, but with linear
-   functions a force, whose momentum was lost
-------------------------------------------------------------------------- */
-
+// points exactly on nodes, at the edge of a body: the next node has no mass, but with linear
+// functions a force, whose momentum was lost
 PARAMETER_TEST(OnNodes, KeepMomentum, const char *,
                Values("shape linear transfer flip 1.0 scheme musl",
                       "shape linear transfer pic scheme usf",
@@ -388,11 +382,8 @@ TEST(TimeStepBeyond, EndsWithAnError)
   }
 }
 
-/* ----------------------------------------------------------------------
-   10^5 steps: energy stays bounded, momentum is that of the start. (10^6 in bench/extremes, where
-   flip 1.0 with musl gains energy without bound, 10 % in 10^5 steps.)
-------------------------------------------------------------------------- */
-
+// 10^5 steps: energy stays bounded, momentum is that of the start. (10^6 in bench/extremes, where
+// flip 1.0 with musl gains energy without bound, 10 % in 10^5 steps.)
 TEST(ManySteps, EnergyAndMomentum)
 {
   for (const char *options : {"transfer flip 0.99 scheme musl", "transfer apic"}) {

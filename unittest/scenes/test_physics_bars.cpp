@@ -59,11 +59,8 @@ class Crossings {
   }
 };
 
-/* ----------------------------------------------------------------------
-   A1: one point in one cell, node 1 fixed: the time integrator alone. v = 0.1 cos(2 pi t) exactly,
-   since the log strain e of the law `linear' obeys e' = v, v' = -E e (N2/m2 = 1/M cancels).
-------------------------------------------------------------------------- */
-
+// A1: one point in one cell, node 1 fixed: the time integrator alone. v = 0.1 cos(2 pi t) exactly,
+// since the log strain e of the law `linear' obeys e' = v, v' = -E e (N2/m2 = 1/M cancels).
 class SinglePoint : public ::testing::TestWithParam<const char *> {
  protected:
   double error_v, energy_min, energy_max, period;
@@ -314,14 +311,11 @@ PARAMETER_TEST(VibratingBar, TenPeriods, VibrationCase, ValuesIn(vibrating_bar_c
   if (c.period > 0.0) { EXPECT_NEAR(v.period, c.period, c.period_tolerance); }
 }
 
-/* ----------------------------------------------------------------------
-   A2, mode 10 in 64 cells, 6.7 cells in a wave, over 38 periods, by another code: period and energy
-   over the exact ones, 1.0295 and .958 (FLIP with MUSL), 1.0083 and 1.053 (APIC). Of the period, a
-   tenth of the deviation; the energy of a leapfrog scheme is 1 +- omega dt/2 = 1 +- .047 by its
-   phase, and a tenth of the deviation, over 38 periods, is any phase. The code above is asked to
-   four digits.
-------------------------------------------------------------------------- */
-
+// A2, mode 10 in 64 cells, 6.7 cells in a wave, over 38 periods, by another code: period and energy
+// over the exact ones, 1.0295 and .958 (FLIP with MUSL), 1.0083 and 1.053 (APIC). Of the period, a
+// tenth of the deviation; the energy of a leapfrog scheme is 1 +- omega dt/2 = 1 +- .047 by its
+// phase, and a tenth of the deviation, over 38 periods, is any phase. The code above is asked to
+// four digits.
 TEST(VibratingBarModeTen, PeriodAndEnergy)
 {
   const double h = 25.0 / 64, beta = 19.0 * PI / 50.0, v0 = 1.0e-5, dt = 0.02 * h;
@@ -470,14 +464,11 @@ PARAMETER_TEST(Bars, Collide, const char *,
   collide(GetParam(), {2.0, 400.0, 0.06, 0.0, -0.02, 0.04, 0.2, -0.4, false});
 }
 
-/* ----------------------------------------------------------------------
-   A4: free-free bar of length 1 in its first mode while it flies through the grid with velocity V.
-   The error must not depend on V: linear shape functions fail, smooth ones must not.
-   u = 0.01 cos(pi X) cos(10 pi t) + V t for a law with P = E (F - 1). The laws here are not linear
-   at strains of 3 %; the truth is a fine total-Lagrangian solution for P = E/2 (F - 1/F), which is
-   neohookean with Poisson's ratio 0, from the same initial state.
-------------------------------------------------------------------------- */
-
+// A4: free-free bar of length 1 in its first mode while it flies through the grid with velocity V.
+// The error must not depend on V: linear shape functions fail, smooth ones must not.
+// u = 0.01 cos(pi X) cos(10 pi t) + V t for a law with P = E (F - 1). The laws here are not linear
+// at strains of 3 %; the truth is a fine total-Lagrangian solution for P = E/2 (F - 1/F), which is
+// neohookean with Poisson's ratio 0, from the same initial state.
 static constexpr double GALILEAN_A = 0.01, GALILEAN_E = 100.0;
 
 /** Displacements of a free bar at times k dt, k = 0 .. steps, by linear finite elements. */
@@ -681,14 +672,11 @@ PARAMETER_TEST(Pulse, WaveSpeed, PulseCase, ValuesIn(pulse_cases))
   EXPECT_NEAR(ratio, 1.0, 0.01);
 }
 
-/* ----------------------------------------------------------------------
-   J5: the same bar at rest, 20 cells, over 5e4 steps, 250 periods: FLIP 1 with MUSL keeps its
-   energy with B-splines and in the total frame; USL may only lose. The numbers of an independent
-   code are given as a comment: E/E0 after 5e4 steps. With leapfrog, whose velocities are those of
-   half a step before, the energy is 1 +- omega dt/2 = 1 +- 0.0157, depending on the phase, for a
-   linear bar; here a tenth of that more.
-------------------------------------------------------------------------- */
-
+// J5: the same bar at rest, 20 cells, over 5e4 steps, 250 periods: FLIP 1 with MUSL keeps its
+// energy with B-splines and in the total frame; USL may only lose. The numbers of an independent
+// code are given as a comment: E/E0 after 5e4 steps. With leapfrog, whose velocities are those of
+// half a step before, the energy is 1 +- omega dt/2 = 1 +- 0.0157, depending on the phase, for a
+// linear bar; here a tenth of that more.
 struct LongBar {
   const char *options;
   double least, most;

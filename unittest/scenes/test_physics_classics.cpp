@@ -10,13 +10,10 @@
 
 using namespace MPM_TEST;
 
-/* ----------------------------------------------------------------------
-   Simple shear between rough plates of a metal with linear hardening, to a shear of 0.75. Elastic
-   strain is small, and so are the normal stresses of simple shear:
-     tau = (SIGMAY/sqrt(3) + H gamma/3)/(1 + H/(3 G))
-   The mean over the last fifth, which is longer than waves need to cross ten times.
-------------------------------------------------------------------------- */
-
+// Simple shear between rough plates of a metal with linear hardening, to a shear of 0.75. Elastic
+// strain is small, and so are the normal stresses of simple shear:
+//   tau = (SIGMAY/sqrt(3) + H gamma/3)/(1 + H/(3 G))
+// The mean over the last fifth, which is longer than waves need to cross ten times.
 TEST(SimpleShear, OfAHardeningMetal)
 {
   const double G = 7.7e7, yield = 1.0e6, H = 2.0e6;
@@ -43,14 +40,11 @@ TEST(SimpleShear, OfAHardeningMetal)
   }
 }
 
-/* ----------------------------------------------------------------------
-   A column under its own weight (A. G. Greenhill, Proc. Camb. Phil. Soc. 4, 65 (1881)) buckles at
-     rho g A L^3/(E I) = 7.837
-   and vibrates below that with a frequency whose square falls with g in proportion, but for less
-   than a percent of that without weight. Plane strain, E/(1 - nu^2), a tenth as thick as high, four
-   cells across.
-------------------------------------------------------------------------- */
-
+// A column under its own weight (A. G. Greenhill, Proc. Camb. Phil. Soc. 4, 65 (1881)) buckles at
+//   rho g A L^3/(E I) = 7.837
+// and vibrates below that with a frequency whose square falls with g in proportion, but for less
+// than a percent of that without weight. Plane strain, E/(1 - nu^2), a tenth as thick as high, four
+// cells across.
 static std::vector<std::array<double, 2>> sway(double share, double until)
 {
   const double E = 2e7 / (1.0 - 0.09), g = share * 7.837 * E * 0.01 / 12.0 / 1000.0;
@@ -102,14 +96,11 @@ TEST(Column, BucklesUnderItsWeight)
             5.0);
 }
 
-/* ----------------------------------------------------------------------
-   A silo (H. A. Janssen, Z. Ver. Dtsch. Ing. 39, 1045 (1895)): walls with friction carry a part of
-   the sand. In a plane bin of the width w, filled to the height H, the floor carries
-     rho g l w (1 - exp(-H/l)),  l = w/(2 mu K)
-   with the ratio K of horizontal to vertical stress, which the run tells. The weight is put on
-   slowly.
-------------------------------------------------------------------------- */
-
+// A silo (H. A. Janssen, Z. Ver. Dtsch. Ing. 39, 1045 (1895)): walls with friction carry a part of
+// the sand. In a plane bin of the width w, filled to the height H, the floor carries
+//   rho g l w (1 - exp(-H/l)),  l = w/(2 mu K)
+// with the ratio K of horizontal to vertical stress, which the run tells. The weight is put on
+// slowly.
 TEST(Silo, WallsCarryAPart)
 {
   LONG_CASE();

@@ -110,11 +110,8 @@ TEST(TwoBodies, FallWithG)
   }
 }
 
-/* ----------------------------------------------------------------------
-   patch test: points with an affine velocity field keep it, APIC to round-off, and deform with it.
-   (Over many steps an affine matrix that belongs to old positions makes an error of order dt.)
-------------------------------------------------------------------------- */
-
+// patch test: points with an affine velocity field keep it, APIC to round-off, and deform with it.
+// (Over many steps an affine matrix that belongs to old positions makes an error of order dt.)
 PARAMETER_TEST(Patch, AffineVelocity, const char *,
                Values("shape linear transfer apic", "shape quadratic", "shape cubic",
                       "shape quadratic scheme musl", "shape quadratic scheme usf",
@@ -295,11 +292,8 @@ PARAMETER_TEST(StressedPatch, InteriorStaysUniform, const char *,
       1.0e-4);
 }
 
-/* ----------------------------------------------------------------------
-   ten turns of a stressed block, driven by the nodes: each point ends where it began, with the
-   stress it began with (pitfalls 1 and 13), and J is constant
-------------------------------------------------------------------------- */
-
+// ten turns of a stressed block, driven by the nodes: each point ends where it began, with the
+// stress it began with (pitfalls 1 and 13), and J is constant
 struct RotationCase {
   int dim;
   const char *options, *law;
@@ -501,11 +495,8 @@ TEST(TwoDisks, Refined)
   }
 }
 
-/* ----------------------------------------------------------------------
-   C3: two hyperelastic rings collide at 60 m/s: momentum, mirror symmetry, energy; no point loses
-   the others, and the rings bounce off
-------------------------------------------------------------------------- */
-
+// C3: two hyperelastic rings collide at 60 m/s: momentum, mirror symmetry, energy; no point loses
+// the others, and the rings bounce off
 TEST(Rings, Collision)
 {
   LONG_CASE();
@@ -771,11 +762,8 @@ PARAMETER_TEST(FreeBody, Invariants, const char *,
   }
 }
 
-/* ----------------------------------------------------------------------
-   compute mpm/atom angmom: in a rigid rotation the affine field of a point has m omega (D_xx +
-   D_yy), where D is the mean of r r over its shape functions
-------------------------------------------------------------------------- */
-
+// compute mpm/atom angmom: in a rigid rotation the affine field of a point has m omega (D_xx +
+// D_yy), where D is the mean of r r over its shape functions
 struct AffineSpin {
   const char *options;
   std::function<double(double)> D;    // along an axis, of the place in the cell, h = 1
@@ -887,17 +875,14 @@ TEST(SpinningDisk, KeepsItsEnergyAtTheStart)
   }
 }
 
-/* ----------------------------------------------------------------------
-   five revolutions: the disk keeps its size, and J agrees with it (pitfall 13).
-   F_new = (1 + dt L) F belongs to x_new = x + dt v: det(1 + dt L) is the change of volume of the
-   points' own motion. The exponential of dt L is not: for a body that turns by an angle a in a step
-   its determinant is exp(2 cos a - 2) < 1, and the stress would let the disk grow, by 1.2 % of its
-   area in each revolution (tried: the radius grew by 2.7 % in five).
-   Centrifugal stretch in plane strain, K = (1-2nu)(1+nu) rho omega^2/(8 E (1-nu)):
-   u(r) = K ((3-2nu) R^2 - r^2) r, mean J - 1 = 2 u(R)/R = 1.625e-3, and the polar radius of
-   gyration grows by K R^2 ((3-2nu) - 2/3) = 1.0060e-3.
-------------------------------------------------------------------------- */
-
+// five revolutions: the disk keeps its size, and J agrees with it (pitfall 13).
+// F_new = (1 + dt L) F belongs to x_new = x + dt v: det(1 + dt L) is the change of volume of the
+// points' own motion. The exponential of dt L is not: for a body that turns by an angle a in a step
+// its determinant is exp(2 cos a - 2) < 1, and the stress would let the disk grow, by 1.2 % of its
+// area in each revolution (tried: the radius grew by 2.7 % in five).
+// Centrifugal stretch in plane strain, K = (1-2nu)(1+nu) rho omega^2/(8 E (1-nu)):
+// u(r) = K ((3-2nu) R^2 - r^2) r, mean J - 1 = 2 u(R)/R = 1.625e-3, and the polar radius of
+// gyration grows by K R^2 ((3-2nu) - 2/3) = 1.0060e-3.
 struct LongSpinCase {
   const char *options, *law;
   friend void PrintTo(const LongSpinCase &c, std::ostream *out) { *out << c.options; }

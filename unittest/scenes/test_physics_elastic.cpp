@@ -14,11 +14,8 @@ static constexpr double E = 1.0e6, NU = 0.3, RHO = 1050.0;
 static constexpr double LAMBDA = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)),
                         MU = 0.5 * E / (1.0 + NU);
 
-/* ----------------------------------------------------------------------
-   D1, static: a bar of length 1 hangs under its weight in uniaxial strain. P(F) = rho g (L - X),
-   P = mu (F - 1/F) + lambda ln F / F.
-------------------------------------------------------------------------- */
-
+// D1, static: a bar of length 1 hangs under its weight in uniaxial strain. P(F) = rho g (L - X),
+// P = mu (F - 1/F) + lambda ln F / F.
 /** Displacements of a hanging bar at depth X below its support. */
 class HangingBar {
   static constexpr int N = 2000;
@@ -157,11 +154,8 @@ TEST(HangingLinear, Breaks)
   EXPECT_GT(hanging_bar({"shape linear transfer flip 1.0 scheme musl", 250, 20, 0.0}), 0.1);
 }
 
-/* ----------------------------------------------------------------------
-   D2: cantilever 4 m x 1 m, plane strain, gravity 10 applied suddenly. Finite elements (total
-   Lagrangian, 80 x 20): its lower corner (4,0) goes down by 3.3027 at t = 1.048.
-------------------------------------------------------------------------- */
-
+// D2: cantilever 4 m x 1 m, plane strain, gravity 10 applied suddenly. Finite elements (total
+// Lagrangian, 80 x 20): its lower corner (4,0) goes down by 3.3027 at t = 1.048.
 struct BeamCase {
   const char *options;
   double h;
@@ -223,13 +217,10 @@ PARAMETER_TEST(Beam, Tip, BeamCase, ValuesIn(beam_cases))
   EXPECT_NEAR(t_lowest, 1.048, 0.02 * 1.048);
 }
 
-/* ----------------------------------------------------------------------
-   The same, held by a region in which it goes on for two cells (bench/atlas/in.cantilever), 2 x 2
-   points in a cell: the upper side is under tension. As long as points moved with other velocities
-   than strain takes with musl and usavg, they came down by 3.53, 3.76, 3.74, and 3.59 m, and .57
-   and .45 of the energy was lost with apic (.02 and .03 with flip)
-------------------------------------------------------------------------- */
-
+// The same, held by a region in which it goes on for two cells (bench/atlas/in.cantilever), 2 x 2
+// points in a cell: the upper side is under tension. As long as points moved with other velocities
+// than strain takes with musl and usavg, they came down by 3.53, 3.76, 3.74, and 3.59 m, and .57
+// and .45 of the energy was lost with apic (.02 and .03 with flip)
 PARAMETER_TEST(TensedBeam, Tip, const char *,
                Values("shape cubic transfer apic scheme musl",
                       "shape gimp transfer flip 1.0 scheme musl",
@@ -265,16 +256,13 @@ PARAMETER_TEST(TensedBeam, Tip, const char *,
   EXPECT_NEAR(measured(name + ", energy", lost), 0.0, 0.1);
 }
 
-/* ----------------------------------------------------------------------
-   D1, dynamic: a cube of 1 m hung at its top (free to slide), 1000 m/s^2 applied suddenly. Finite
-   elements 40^3: lowest -1.7516 m at t = 0.0884 s of a bottom corner.
-   Vertical stretch is up to 4.7 at the support. Points part (the cube falls) with 2 and 3 points
-   per cell and axis for quadratic and cubic functions, and hold with 4 to 6.
-   The minimum is late by 2.9 % with 10 cells, 1.3 % with 14 and 0.7 % with 20. This comes from the
-   free sides, where the cube contracts to 3 cells per half: in uniaxial strain, between slipping
-   sides, the time is right to 0.3 % with 10 cells.
-------------------------------------------------------------------------- */
-
+// D1, dynamic: a cube of 1 m hung at its top (free to slide), 1000 m/s^2 applied suddenly. Finite
+// elements 40^3: lowest -1.7516 m at t = 0.0884 s of a bottom corner.
+// Vertical stretch is up to 4.7 at the support. Points part (the cube falls) with 2 and 3 points
+// per cell and axis for quadratic and cubic functions, and hold with 4 to 6.
+// The minimum is late by 2.9 % with 10 cells, 1.3 % with 14 and 0.7 % with 20. This comes from the
+// free sides, where the cube contracts to 3 cells per half: in uniaxial strain, between slipping
+// sides, the time is right to 0.3 % with 10 cells.
 TEST(Block, SuddenLoad)
 {
   const int cells = 14, ppc = 4;

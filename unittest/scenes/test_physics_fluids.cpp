@@ -155,13 +155,10 @@ TEST(Sod, LinearShapeFunctionsDoNotConverge)
   EXPECT_GT(fine.density, coarse.density);
 }
 
-/* ----------------------------------------------------------------------
-   Gas at rest under pressure, with noise. Points in the middle of cells are on the edges of
-   functions of nodes that are 1.5 spacings away, where N = s^2/2, and (grad N)^2/N = 2 however
-   little s they reach over: all of the pressure comes at once, and the noise grows. Between the
-   edges it does not.
-------------------------------------------------------------------------- */
-
+// Gas at rest under pressure, with noise. Points in the middle of cells are on the edges of
+// functions of nodes that are 1.5 spacings away, where N = s^2/2, and (grad N)^2/N = 2 however
+// little s they reach over: all of the pressure comes at once, and the noise grows. Between the
+// edges it does not.
 TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
 {
   const auto growth = [](const char *ppc, const char *options) {
@@ -181,11 +178,8 @@ TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
   EXPECT_GT(growth("3 1", ""), 1.0e6);    // as the manual warns
 }
 
-/* ----------------------------------------------------------------------
-   W.F. Noh, J. Comput. Phys. 72 (1987) 78: cold gas runs into a wall. gamma = 5/3: density 4,
-   pressure 4/3 behind a shock of speed 1/3
-------------------------------------------------------------------------- */
-
+// W.F. Noh, J. Comput. Phys. 72 (1987) 78: cold gas runs into a wall. gamma = 5/3: density 4,
+// pressure 4/3 behind a shock of speed 1/3
 TEST(Noh, Planar)
 {
   LONG_CASE();
@@ -282,11 +276,8 @@ TEST(Gas, InitialEnergyInMetalUnits)
   EXPECT_NEAR(run.gather()[0].stress[0], -0.5 * 0.01 * 0.2 * run.lmp->force->nktv2p, 1e-6);
 }
 
-/* ----------------------------------------------------------------------
-   J1: aluminum at 3500 m/s against a rigid wall, which is a symmetric impact at 7 km/s:
-   U = 10040 m/s, P = 94.983 GPa, density ratio 1.53517, e = u^2/2
-------------------------------------------------------------------------- */
-
+// J1: aluminum at 3500 m/s against a rigid wall, which is a symmetric impact at 7 km/s:
+// U = 10040 m/s, P = 94.983 GPa, density ratio 1.53517, e = u^2/2
 TEST(Hugoniot, SymmetricImpactAt7KilometersPerSecond)
 {
   const double h = 1e-4, u = 3500, U = 10040, rho = 2703, t = 6e-7;
@@ -367,11 +358,8 @@ TEST(Detonation, OfTnt)
   EXPECT_GT(peak[1], peak[0]);
 }
 
-/* ----------------------------------------------------------------------
-   H4: column of liquid under its weight, damped by bulk viscosity: for eos linear the density is
-   density_0 exp(g (top - y)/c^2)
-------------------------------------------------------------------------- */
-
+// H4: column of liquid under its weight, damped by bulk viscosity: for eos linear the density is
+// density_0 exp(g (top - y)/c^2)
 TEST(Hydrostatic, Column)
 {
   LONG_CASE();
@@ -397,11 +385,8 @@ TEST(Hydrostatic, Column)
   EXPECT_LT(measured("H4 kinetic energy", run.sums().kinetic / (g * H * H * h)), 1e-6);
 }
 
-/* ----------------------------------------------------------------------
-   H2: Couette and Poiseuille flow from rest, y/L and t nu/L^2, series of G.K. Batchelor,
-   An Introduction to Fluid Dynamics, 1967, sec. 4.3
-------------------------------------------------------------------------- */
-
+// H2: Couette and Poiseuille flow from rest, y/L and t nu/L^2, series of G.K. Batchelor,
+// An Introduction to Fluid Dynamics, 1967, sec. 4.3
 double couette(double y, double t)
 {
   double u = y;
@@ -508,14 +493,11 @@ TEST(Channel, SteadyFlowOfYieldStressAndPowerLawFluids)
             0.025);
 }
 
-/* ----------------------------------------------------------------------
-   Drops in free flight. A point that is alone keeps the shear of its velocity gradient L, as
-   nothing acts on it, and its deformation gradient grows for ever; its J must not take notice of
-   that. With APIC and quadratic functions the nodes give dL/dt = -4 J sigma/(density_0 h^2), so
-   that small changes of volume are oscillations of ln J with the frequency 2 sqrt(DIM) c/h, and V_0
-   psi + m h^2/8 L:L is conserved.
-------------------------------------------------------------------------- */
-
+// Drops in free flight. A point that is alone keeps the shear of its velocity gradient L, as
+// nothing acts on it, and its deformation gradient grows for ever; its J must not take notice of
+// that. With APIC and quadratic functions the nodes give dL/dt = -4 J sigma/(density_0 h^2), so
+// that small changes of volume are oscillations of ln J with the frequency 2 sqrt(DIM) c/h, and V_0
+// psi + m h^2/8 L:L is conserved.
 constexpr double SHEAR = 0.5, DT = 0.02, DENSITY = 1.5, BULK = 150.0;
 
 /** Points of a quarter (3d: eighth) of a cell each, in a block of n points along each axis. */

@@ -13,15 +13,12 @@ using namespace MPM_TEST;
 
 namespace {
 
-/* ----------------------------------------------------------------------
-   Spall. A pulse of pressure with the peak P and a straight tail of length L returns from the free
-   rear surface of a plate as tension. In an acoustic material (pressure linear in the strain) the
-   tension at a depth x is at most 2 x P/L, so that the plate breaks at x = S L/(2 P) when it bears
-   S, and the surface, which had the velocity 2 P/(rho c), is slowed down by 2 S/(rho c) before it
-   feels the crack: the pull-back. (The tip of the returning pulse goes on, and breaks what is
-   deeper, too: a limit without a time breaks a zone.)
-------------------------------------------------------------------------- */
-
+// Spall. A pulse of pressure with the peak P and a straight tail of length L returns from the free
+// rear surface of a plate as tension. In an acoustic material (pressure linear in the strain) the
+// tension at a depth x is at most 2 x P/L, so that the plate breaks at x = S L/(2 P) when it bears
+// S, and the surface, which had the velocity 2 P/(rho c), is slowed down by 2 S/(rho c) before it
+// feels the crack: the pull-back. (The tip of the returning pulse goes on, and breaks what is
+// deeper, too: a limit without a time breaks a zone.)
 struct Spalled {
   double pull_back;    // 2 P/(rho c) less the least velocity of the surface, over 2 S/(rho c)
   double depth;        // of the points that break first, over S L/(2 P)
@@ -92,15 +89,12 @@ TEST(Spall, PullBackOfATriangularPulse)
   }
 }
 
-/* ----------------------------------------------------------------------
-   A bar hits a rigid wall and leaves it with its speed. What stands for it, masses with springs,
-   does not: the mass at the wall loses its energy at once, and the front of the wave spreads, so
-   that vibrations are left. Of N cells, N = 6, 12, 24, 48, a chain keeps .893, .938, .963, .977 of
-   the speed. Quadratic functions reach the wall from farther away: at the most twice that is
-   missing. (A square keeps 0.76, as it vibrates in two dimensions: 0.715, 0.748, 0.760 with flip
-   1.0 and 0.727, 0.749, 0.760 with apic, with 8, 16, 32 cells in its edge.)
-------------------------------------------------------------------------- */
-
+// A bar hits a rigid wall and leaves it with its speed. What stands for it, masses with springs,
+// does not: the mass at the wall loses its energy at once, and the front of the wave spreads, so
+// that vibrations are left. Of N cells, N = 6, 12, 24, 48, a chain keeps .893, .938, .963, .977 of
+// the speed. Quadratic functions reach the wall from farther away: at the most twice that is
+// missing. (A square keeps 0.76, as it vibrates in two dimensions: 0.715, 0.748, 0.760 with flip
+// 1.0 and 0.727, 0.749, 0.760 with apic, with 8, 16, 32 cells in its edge.)
 /** Springs and masses 1, halves at the ends, against a wall that does not pull. */
 double rebound_of_a_chain(int N)
 {
@@ -148,14 +142,11 @@ PARAMETER_TEST(ReboundOfABar, FromAWallThatSeparates, const char *,
   EXPECT_LT(missing[1], 0.7 * missing[0]);
 }
 
-/* ----------------------------------------------------------------------
-   K1(c): a grain hits a half-space. A force F(t) at a point that is slow against the time of waves
-   through the contact leaves the energy B * integral of (dF/dt)^2 in waves, with B = I/(2 pi rho
-   cs^3) and I the imaginary part of the integral of xi alpha/R(xi) for a harmonic point force (G.F.
-   Miller, H. Pursey, Proc. R. Soc. A 223 (1954) 521; of it 67.4 % is the Rayleigh wave for a
-   Poisson number of 1/4, in R at its zero). S.C. Hunter, J. Mech. Phys. Solids 5 (1957) 162.
-------------------------------------------------------------------------- */
-
+// K1(c): a grain hits a half-space. A force F(t) at a point that is slow against the time of waves
+// through the contact leaves the energy B * integral of (dF/dt)^2 in waves, with B = I/(2 pi rho
+// cs^3) and I the imaginary part of the integral of xi alpha/R(xi) for a harmonic point force (G.F.
+// Miller, H. Pursey, Proc. R. Soc. A 223 (1954) 521; of it 67.4 % is the Rayleigh wave for a
+// Poisson number of 1/4, in R at its zero). S.C. Hunter, J. Mech. Phys. Solids 5 (1957) 162.
 double radiation(double nu)
 {
   const double g2 = (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)), g = std::sqrt(g2);
@@ -238,18 +229,15 @@ TEST(HalfSpace, GrainLosesEnergyToWaves)
   }
 }
 
-/* ----------------------------------------------------------------------
-   F3: a chain of equal spheres that touch, the first of which comes with a velocity: one solitary
-   wave, as of Hertzian springs, F = E sqrt(2 R)/(3 (1 - nu^2)) delta^1.5 (V.F. Nesterenko, J. Appl.
-   Mech. Tech. Phys. 24 (1983) 733), which are integrated here. Spheres with even and odd numbers
-   are one field each. Asked: arrival to 5 %, peak force to 10 %, for 20 spheres with 10 cells in a
-   diameter. There the contact has a radius of one cell: arrival 0.91, force 1.03, velocity of the
-   last of four spheres 0.71 (20 cells: 1.06, 0.75, 0.86); these are four spheres with 40 cells,
-   four in the radius of the contact, which is what Hertz's force takes (test_hertz). With 56 cells
-   and a velocity of 0.02: 0.948, 1.038, 0.973, as spheres that overlap by 8 % of their radius are
-   stiffer than Hertz's.
-------------------------------------------------------------------------- */
-
+// F3: a chain of equal spheres that touch, the first of which comes with a velocity: one solitary
+// wave, as of Hertzian springs, F = E sqrt(2 R)/(3 (1 - nu^2)) delta^1.5 (V.F. Nesterenko, J. Appl.
+// Mech. Tech. Phys. 24 (1983) 733), which are integrated here. Spheres with even and odd numbers
+// are one field each. Asked: arrival to 5 %, peak force to 10 %, for 20 spheres with 10 cells in a
+// diameter. There the contact has a radius of one cell: arrival 0.91, force 1.03, velocity of the
+// last of four spheres 0.71 (20 cells: 1.06, 0.75, 0.86); these are four spheres with 40 cells,
+// four in the radius of the contact, which is what Hertz's force takes (test_hertz). With 56 cells
+// and a velocity of 0.02: 0.948, 1.038, 0.973, as spheres that overlap by 8 % of their radius are
+// stiffer than Hertz's.
 struct ChainMotion {
   double arrival, force, last;    // at a sphere; of the peak; velocity of the last sphere
 };

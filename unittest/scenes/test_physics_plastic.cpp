@@ -10,12 +10,9 @@
 
 using namespace MPM_TEST;
 
-/* ----------------------------------------------------------------------
-   E1(f): a bar in uniaxial strain hits a wall at 100 m/s. An elastic precursor runs ahead of the
-   plastic wave. J2 without hardening, E = 70 GPa, nu = 0.33, yield stress 0.3 GPa; the velocities
-   are those in the frame of the bar.
-------------------------------------------------------------------------- */
-
+// E1(f): a bar in uniaxial strain hits a wall at 100 m/s. An elastic precursor runs ahead of the
+// plastic wave. J2 without hardening, E = 70 GPa, nu = 0.33, yield stress 0.3 GPa; the velocities
+// are those in the frame of the bar.
 TEST(PlasticWave, TwoWaveStructure)
 {
   const double E = 70e9, nu = 0.33, sigmay = 0.3e9, rho = 2700.0, up = 100.0;
@@ -89,13 +86,10 @@ TEST(PlasticWave, TwoWaveStructure)
   EXPECT_NEAR(measured("E1f speed of the precursor", front[1] / time), C1, 0.01 * C1);
 }
 
-/* ----------------------------------------------------------------------
-   Thick-walled tube under internal pressure, plane strain, ideally plastic (R. Hill, The
-   Mathematical Theory of Plasticity, 1950, ch. V): plastic for r < c with
-     p = k [2 ln(c/a) + 1 - c^2/b^2],  k = SIGMAY/sqrt(3)  (von Mises, exact for nu = 1/2)
-   and at the outer surface u = 2 (1 - nu^2) k c^2/(E b). A quarter, points on circles.
-------------------------------------------------------------------------- */
-
+// Thick-walled tube under internal pressure, plane strain, ideally plastic (R. Hill, The
+// Mathematical Theory of Plasticity, 1950, ch. V): plastic for r < c with
+//   p = k [2 ln(c/a) + 1 - c^2/b^2],  k = SIGMAY/sqrt(3)  (von Mises, exact for nu = 1/2)
+// and at the outer surface u = 2 (1 - nu^2) k c^2/(E b). A quarter, points on circles.
 struct Tube {
   double outer, plastic;    // displacement of the outer surface, radius of the plastic zone
 };
@@ -181,13 +175,10 @@ TEST(Tube, InternalPressure)
   }
 }
 
-/* ----------------------------------------------------------------------
-   E4: Taylor bar of the steel 42CrMo4 (O. Pantale, DynELA), 32.4 mm long, radius 3.2 mm, 287 m/s,
-   80 microseconds, Johnson-Cook with heating; a quarter of it. Axisymmetric finite elements (own,
-   16 x 160, frictionless): length 26.525 mm, diameter 11.237 mm, plastic strain 1.884, 608 C;
-   DynELA and Abaqus in 3d: 26.52 to 26.55, 11.18 to 11.22, 1.84, 597.
-------------------------------------------------------------------------- */
-
+// E4: Taylor bar of the steel 42CrMo4 (O. Pantale, DynELA), 32.4 mm long, radius 3.2 mm, 287 m/s,
+// 80 microseconds, Johnson-Cook with heating; a quarter of it. Axisymmetric finite elements (own,
+// 16 x 160, frictionless): length 26.525 mm, diameter 11.237 mm, plastic strain 1.884, 608 C;
+// DynELA and Abaqus in 3d: 26.52 to 26.55, 11.18 to 11.22, 1.84, 597.
 TEST(TaylorBar, SteelThatHeats)
 {
   LONG_CASE();

@@ -10,13 +10,10 @@
 
 using namespace MPM_TEST;
 
-/* ----------------------------------------------------------------------
-   J3: a bar whose half is 1e6 times as stiff, of the same density: the impedances have the ratio
-   1000. Of a pulse in the soft half R = 999/1001 = .99800 of the stress returns, and 1.99800 goes
-   on, to 1 %; the end of the stiff half absorbs it. The functions of the total frame are linear, so
-   that nothing is smeared but one cell.
-------------------------------------------------------------------------- */
-
+// J3: a bar whose half is 1e6 times as stiff, of the same density: the impedances have the ratio
+// 1000. Of a pulse in the soft half R = 999/1001 = .99800 of the stress returns, and 1.99800 goes
+// on, to 1 %; the end of the stiff half absorbs it. The functions of the total frame are linear, so
+// that nothing is smeared but one cell.
 static constexpr double H = 0.1, SOFT = 1.0, STIFF = 1.0e6;
 
 static std::string two_stiffnesses(double soft, double stiff)
@@ -105,13 +102,10 @@ TEST(StiffnessRatio, TimeStep)
   EXPECT_NEAR(run.stable_dt() / H, 1.0, 1.0e-6);
 }
 
-/* ----------------------------------------------------------------------
-   J2: water and a gas of a thousandth of its density, one above the other in a closed column, at
-   rest from the start, in one field. After 1e4 steps: kinetic energy below 1e-4 rho g H^2, pressure
-   of the gas to 5 %, no point of gas faster than sound. The column is one point wide, so that water
-   stays above the gas.
-------------------------------------------------------------------------- */
-
+// J2: water and a gas of a thousandth of its density, one above the other in a closed column, at
+// rest from the start, in one field. After 1e4 steps: kinetic energy below 1e-4 rho g H^2, pressure
+// of the gas to 5 %, no point of gas faster than sound. The column is one point wide, so that water
+// stays above the gas.
 TEST(DensityRatio, ColumnsAtRest)
 {
   LONG_CASE();
@@ -163,15 +157,12 @@ TEST(DensityRatio, ColumnsAtRest)
     }
 }
 
-/* ----------------------------------------------------------------------
-   J2, in motion: a column of water, twice as high as wide, collapses in a closed tank that is full
-   of this gas otherwise. Asked: pressure of the gas to 5 %, momentum to 1e-10, no point of gas
-   faster than sound. The gas weighs so little that water moves as without it. The run ends when the
-   front has gone as far as the column was wide. Later the pressure falls, by 23 % in another 0.8
-   units of time, as the volumes of points of gas next to water, which moves them whatever their
-   pressure is, drift: together they outgrow the tank.
-------------------------------------------------------------------------- */
-
+// J2, in motion: a column of water, twice as high as wide, collapses in a closed tank that is full
+// of this gas otherwise. Asked: pressure of the gas to 5 %, momentum to 1e-10, no point of gas
+// faster than sound. The gas weighs so little that water moves as without it. The run ends when the
+// front has gone as far as the column was wide. Later the pressure falls, by 23 % in another 0.8
+// units of time, as the volumes of points of gas next to water, which moves them whatever their
+// pressure is, drift: together they outgrow the tank.
 TEST(DensityRatio, DamBreakUnderGas)
 {
   LONG_CASE();

@@ -10,11 +10,8 @@
 
 using namespace MPM_TEST;
 
-/* ----------------------------------------------------------------------
-   E3: Taylor bar, OFHC copper, 190 m/s, 25.4 mm x 7.6 mm. Experiment (Johnson, Holmquist, J. Appl.
-   Phys. 64 (1988) 3901): length 16.2, diameter 13.5, diameter at 0.2 of the initial length 10.1 mm.
-------------------------------------------------------------------------- */
-
+// E3: Taylor bar, OFHC copper, 190 m/s, 25.4 mm x 7.6 mm. Experiment (Johnson, Holmquist, J. Appl.
+// Phys. 64 (1988) 3901): length 16.2, diameter 13.5, diameter at 0.2 of the initial length 10.1 mm.
 TEST(TaylorBar, OfhcCopper)
 {
   LONG_CASE();
@@ -51,15 +48,12 @@ TEST(TaylorBar, OfhcCopper)
   EXPECT_NEAR(width, 10.16, 0.03 * 10.16);
 }
 
-/* ----------------------------------------------------------------------
-   H1: dam break (J.C. Martin, W.J. Moyce, Phil. Trans. A 244 (1952) 312), a = 57.15 mm, height 2 a;
-   front Z = x/a over T = t sqrt(2 g/a) (table 2), height H over tau = t sqrt(g/a) (table 6).
-   Numerical fronts are earlier than the gate of the experiment: a shift up to 0.2 is allowed. (With
-   10, 20, 40 cells in a, apic: slope 1.455, 1.401, 1.416; the front at T = 1, 2, 3 is at 1.43,
-   2.63, 4.10, at 1.51, 2.67, 4.08, and at 1.55, 2.66, 4.09: it is late at the start, while it is
-   within one cell of the floor, and right from T = 2 on.)
-------------------------------------------------------------------------- */
-
+// H1: dam break (J.C. Martin, W.J. Moyce, Phil. Trans. A 244 (1952) 312), a = 57.15 mm, height 2 a;
+// front Z = x/a over T = t sqrt(2 g/a) (table 2), height H over tau = t sqrt(g/a) (table 6).
+// Numerical fronts are earlier than the gate of the experiment: a shift up to 0.2 is allowed. (With
+// 10, 20, 40 cells in a, apic: slope 1.455, 1.401, 1.416; the front at T = 1, 2, 3 is at 1.43,
+// 2.63, 4.10, at 1.51, 2.67, 4.08, and at 1.55, 2.66, 4.09: it is late at the start, while it is
+// within one cell of the floor, and right from T = 2 on.)
 PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
                Values("apic", "aflip 1.0", "flip 0.99 scheme musl"))
 {
@@ -276,13 +270,10 @@ PARAMETER_TEST(GrainOnBlock, Momentum, const char *,
   }
 }
 
-/* ----------------------------------------------------------------------
-   K1(b): a grain hits the end of a column between slipping sides: v' = -F/m - F'/Z with
-   F = k delta^(3/2), Z = density c A. k^.4 m^.6 v^.2/Z = .102252: e = .840153, t = .904748 ms.
-   The column is one cell wide, one point to a layer, so that the grain pushes on the whole face;
-   mass and stiffness are those of the case with 20 x 20 mm, times the ratio of the faces.
-------------------------------------------------------------------------- */
-
+// K1(b): a grain hits the end of a column between slipping sides: v' = -F/m - F'/Z with
+// F = k delta^(3/2), Z = density c A. k^.4 m^.6 v^.2/Z = .102252: e = .840153, t = .904748 ms.
+// The column is one cell wide, one point to a layer, so that the grain pushes on the whole face;
+// mass and stiffness are those of the case with 20 x 20 mm, times the ratio of the faces.
 PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
 {
   LONG_AFTER(1);
@@ -351,13 +342,10 @@ PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
   EXPECT_NEAR(measured("K1(b) largest force/exact", largest / force), 1.0, 0.03);
 }
 
-/* ----------------------------------------------------------------------
-   K1(d): a grain rests on a block under gravity for 1e5 steps. Asked: the force is its weight to 1
-   %, the center of mass does not drift, nothing heats up. It has settled, with viscous friction,
-   before. Flip 1.0 is not here: with musl it gains energy without bound in so many steps
-   (Howto_mpm_stability), and throws the grain.
-------------------------------------------------------------------------- */
-
+// K1(d): a grain rests on a block under gravity for 1e5 steps. Asked: the force is its weight to 1
+// %, the center of mass does not drift, nothing heats up. It has settled, with viscous friction,
+// before. Flip 1.0 is not here: with musl it gains energy without bound in so many steps
+// (Howto_mpm_stability), and throws the grain.
 TEST(GrainAtRest, HundredThousandSteps)
 {
   LONG_CASE();

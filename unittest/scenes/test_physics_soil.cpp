@@ -32,12 +32,9 @@ std::string layer(double depth, double h, int cells, double angle, double ramp,
                 g, ramp, ramp, std::sin(angle), -std::cos(angle));
 }
 
-/* ----------------------------------------------------------------------
-   G2: flow with mu(I) on an incline, u(y) = 2/3 I_theta/d sqrt(fraction g cos) (h^1.5 - (h-y)^1.5)
-   (L.E. Silbert et al., Phys. Rev. E 64 (2001) 051302; P. Jop et al., J. Fluid Mech. 541 (2005)
-   167)
-------------------------------------------------------------------------- */
-
+// G2: flow with mu(I) on an incline, u(y) = 2/3 I_theta/d sqrt(fraction g cos) (h^1.5 - (h-y)^1.5)
+// (L.E. Silbert et al., Phys. Rev. E 64 (2001) 051302; P. Jop et al., J. Fluid Mech. 541 (2005)
+// 167)
 struct Incline {
   double surface, rms;    ///< velocity at the surface, and error of the profile, over the exact u_s
   double fastest;
@@ -89,12 +86,9 @@ TEST(GranularFlow, StopsBelowTheStaticAngle)
   EXPECT_LT(measured("G2 velocity at 20 degrees", flow(20.0, 10, 0.05, 0.6).fastest), 1e-4);
 }
 
-/* ----------------------------------------------------------------------
-   G3: infinite slope without cohesion. Where flow keeps the volume, the strength on a plane of
-   sliding is tan = sin(phi) (E.H. Davis, in: Soil Mechanics, Butterworths, 1968, p. 341): coaxial
-   flow.
-------------------------------------------------------------------------- */
-
+// G3: infinite slope without cohesion. Where flow keeps the volume, the strength on a plane of
+// sliding is tan = sin(phi) (E.H. Davis, in: Soil Mechanics, Butterworths, 1968, p. 341): coaxial
+// flow.
 TEST(InfiniteSlope, SlidesWhenTooSteep)
 {
   const double depth = 0.5, h = 0.05, phi = 30.0 * DEG;
@@ -122,17 +116,14 @@ TEST(InfiniteSlope, SlidesWhenTooSteep)
     }
 }
 
-/* ----------------------------------------------------------------------
-   The acceleration of such a layer. On a floor with friction mu: g (sin - mu cos), whatever the
-   transfer. On a rough floor the layer slides in the material: mu = sin(phi). The strength is
-   reached at all depths at once, so that only the mean velocity is determined, by the force at the
-   floor, and it is a small difference: 1 % of the force is 4 % of the acceleration. Shape functions
-   cannot follow the jump of velocity at the floor: up to half a cell stays behind with it, h/(2
-   depth) of the mean. What transfers take at the jump comes on top: apic is 20 % too slow with 10
-   cells in the depth and 12 % with 20 (and more with smaller time steps), which is why it is not
-   here: its error, of first order in h as well, is that of a viscosity.
-------------------------------------------------------------------------- */
-
+// The acceleration of such a layer. On a floor with friction mu: g (sin - mu cos), whatever the
+// transfer. On a rough floor the layer slides in the material: mu = sin(phi). The strength is
+// reached at all depths at once, so that only the mean velocity is determined, by the force at the
+// floor, and it is a small difference: 1 % of the force is 4 % of the acceleration. Shape functions
+// cannot follow the jump of velocity at the floor: up to half a cell stays behind with it, h/(2
+// depth) of the mean. What transfers take at the jump comes on top: apic is 20 % too slow with 10
+// cells in the depth and 12 % with 20 (and more with smaller time steps), which is why it is not
+// here: its error, of first order in h as well, is that of a viscosity.
 double slide(double h, double angle, const std::string &options, const std::string &floor)
 {
   std::string scene =
@@ -170,11 +161,8 @@ TEST(InfiniteSlope, Acceleration)
     }
 }
 
-/* ----------------------------------------------------------------------
-   G1: run-out of a planar column, (L - L0)/L0 = 1.2 a for a < 2.3 (G. Lube et al., Phys. Rev. E 72
-   (2005) 041301). Friction coefficient 0.577: sin(phi) where flow keeps the volume, see above.
-------------------------------------------------------------------------- */
-
+// G1: run-out of a planar column, (L - L0)/L0 = 1.2 a for a < 2.3 (G. Lube et al., Phys. Rev. E 72
+// (2005) 041301). Friction coefficient 0.577: sin(phi) where flow keeps the volume, see above.
 TEST(ColumnCollapse, RunOut)
 {
   LONG_CASE();
@@ -207,13 +195,10 @@ TEST(ColumnCollapse, RunOut)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Transfers with an affine matrix create no energy at rough walls. The matrix of a single grain
-   near the floor and its velocity are together projected on the fields that vanish there, v + C d =
-   0 with the distance d down to the floor: with the kinetic energy v^2 + D C^2 that leaves v s/(1 +
-   s), s = d^2/D.
-------------------------------------------------------------------------- */
-
+// Transfers with an affine matrix create no energy at rough walls. The matrix of a single grain
+// near the floor and its velocity are together projected on the fields that vanish there, v + C d =
+// 0 with the distance d down to the floor: with the kinetic energy v^2 + D C^2 that leaves v s/(1 +
+// s), s = d^2/D.
 TEST(RoughFloor, StopsAGrain)
 {
   for (const char *shape : {"quadratic", "cubic"})

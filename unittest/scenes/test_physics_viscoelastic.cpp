@@ -10,9 +10,8 @@
 
 using namespace MPM_TEST;
 
-/** Displacement u, velocity v, strains q of Maxwell elements of the mode exp(i k x):
- *  density v' = -k^2 (M u + eta v + sum 4/3 G q), q' = v - q/tau, by the classical Runge-Kutta
- *  method. */
+/** Displacement u, velocity v, strains q of Maxwell elements of the mode exp(i k x): density v' =
+ *  -k^2 (M u + eta v + sum 4/3 G q), q' = v - q/tau, by the classical Runge-Kutta method. */
 struct Mode {
   double M, eta, G[2], tau[2], k;
   double y[4] = {0.0, 1.0, 0.0, 0.0};

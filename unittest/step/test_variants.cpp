@@ -89,12 +89,9 @@ PARAMETER_TEST(Conservation, MassAndMomentum, std::string, ValuesIn(all_variants
     EXPECT_NEAR(end.x[d], start.x[d] + 300 * 2.0e-4 * start.p[d] / start.mass, exact);
 }
 
-/* ----------------------------------------------------------------------
-   Noise at rest: a free body whose points have small random velocities, which the lattice sees in
-   part only. It must not grow, whatever the transfer leaves of it, as the null space of the
-   transfers gives way to forces that points cannot see, or the reverse.
-------------------------------------------------------------------------- */
-
+// Noise at rest: a free body whose points have small random velocities, which the lattice sees in
+// part only. It must not grow, whatever the transfer leaves of it, as the null space of the
+// transfers gives way to forces that points cannot see, or the reverse.
 PARAMETER_TEST(NoiseAtRest, DoesNotGrow, std::string, ValuesIn(all_variants()))
 {
   LONG_AFTER(26);
@@ -117,15 +114,12 @@ PARAMETER_TEST(NoiseAtRest, DoesNotGrow, std::string, ValuesIn(all_variants()))
   EXPECT_EQ(left < 0.01, !keeps);
 }
 
-/* ----------------------------------------------------------------------
-   Noise of points that change cells: a periodic medium under the uniform pressure p = 0.01 K, with
-   points 0.7 node spacings apart along both axes. Nothing should happen, at rest or in flight over
-   the lattice. What nodes feel is the sum of p V_p grad N, which is zero for points that are boxes
-   side by side. For B-splines of order n it is, by Poisson's summation, a wave of k = 2 pi/0.7 with
-   the amplitude 2 p k sinc(k h/2)^(n+1), and smaller ones of 2 k, 3 k, ..., all of which add up to
-   sums over the points.
-------------------------------------------------------------------------- */
-
+// Noise of points that change cells: a periodic medium under the uniform pressure p = 0.01 K, with
+// points 0.7 node spacings apart along both axes. Nothing should happen, at rest or in flight over
+// the lattice. What nodes feel is the sum of p V_p grad N, which is zero for points that are boxes
+// side by side. For B-splines of order n it is, by Poisson's summation, a wave of k = 2 pi/0.7 with
+// the amplitude 2 p k sinc(k h/2)^(n+1), and smaller ones of 2 k, 3 k, ..., all of which add up to
+// sums over the points.
 struct Crossing {
   const char *shape;
   int order;                                // of B-splines, 0: none
@@ -216,12 +210,9 @@ static const Crossing crossing_noise_cases[] = {
     {"shape cpdi2", 0, 0.0, 1.0e-11, 1.0e-11}};
 INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise, ::testing::ValuesIn(crossing_noise_cases));
 
-/* ----------------------------------------------------------------------
-   A free rectangle begins to stretch along its own axis. What it has reached after about a quarter
-   of its period must not depend on how it lies on the lattice: shifts by fractions of a cell, and
-   rotations of the body.
-------------------------------------------------------------------------- */
-
+// A free rectangle begins to stretch along its own axis. What it has reached after about a quarter
+// of its period must not depend on how it lies on the lattice: shifts by fractions of a cell, and
+// rotations of the body.
 static double extension(const std::string &options, double shift, double degrees)
 {
   Scene run(rectangle("-0.8 0.8 -0.4 0.4", options) +
@@ -281,12 +272,9 @@ static const Variant grid_invariance_cases[] = {
     {"shape bernstein scheme musl frame total", 0.08, 0.0, 0.0}};
 INSTANTIATE_TEST_SUITE_P(More, GridInvariance, ::testing::ValuesIn(grid_invariance_cases));
 
-/* ----------------------------------------------------------------------
-   A bar in uniaxial strain, 12 cells between the grips, is pulled at constant velocity. The total
-   frame passes a stretch of 11 (test_total.cpp). In the updated frame it comes apart: the middle
-   half stays 10 % behind, or its mean stress falls below 70 % of lambda ln F/F + mu (F - 1/F).
-------------------------------------------------------------------------- */
-
+// A bar in uniaxial strain, 12 cells between the grips, is pulled at constant velocity. The total
+// frame passes a stretch of 11 (test_total.cpp). In the updated frame it comes apart: the middle
+// half stays 10 % behind, or its mean stress falls below 70 % of lambda ln F/F + mu (F - 1/F).
 static double fracture(const std::string &options)
 {
   const double E = 1.0e6, nu = 0.3, rate = 2.5, dt = 5.0e-4;
@@ -333,13 +321,10 @@ PARAMETER_TEST(Fracture, Stretch, Variant, ValuesIn(shapes))
   EXPECT_LT(stretch, GetParam().most);
 }
 
-/* ----------------------------------------------------------------------
-   The numbers of the reference, about 2, 3, and 4, are those of evenly stretched points, half a
-   cell apart at first, under a uniform stress: where a gap carries nothing, and the whole stress is
-   a force on the node next to it. 10 %, as gaps of all places in their cells are sampled by 40 of
-   them, and for the word about
-------------------------------------------------------------------------- */
-
+// The numbers of the reference, about 2, 3, and 4, are those of evenly stretched points, half a
+// cell apart at first, under a uniform stress: where a gap carries nothing, and the whole stress is
+// a force on the node next to it. 10 %, as gaps of all places in their cells are sampled by 40 of
+// them, and for the word about
 TEST(Fracture, EvenStretch)
 {
   const struct {
@@ -451,14 +436,11 @@ TEST(Equivalent, SchemesAgreeForSmallSteps)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Points fly apart with the velocity G X, nearly without stress, in steps of 1 and 4 in turns, and
-   APIC is given its matrix G M^-1: F is that of their motion, M(t) = I + G t. USF knows that of the
-   steps before the last one, USAVG half of the last; what they strain in the first step, M(-dt)^-1
-   or half of that, has no motion. Half a step of USAVG is right to third order, (|G| dt)^3 with |G|
-   = 0.5
-------------------------------------------------------------------------- */
-
+// Points fly apart with the velocity G X, nearly without stress, in steps of 1 and 4 in turns, and
+// APIC is given its matrix G M^-1: F is that of their motion, M(t) = I + G t. USF knows that of the
+// steps before the last one, USAVG half of the last; what they strain in the first step, M(-dt)^-1
+// or half of that, has no motion. Half a step of USAVG is right to third order, (|G| dt)^3 with |G|
+// = 0.5
 TEST(ChangingSteps, StrainIsThatOfTheMotion)
 {
   const std::array<double, 4> G = {0.2, -0.3, 0.4, -0.1};
