@@ -10,8 +10,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Entries of the vector of fix mpm/rigid. */
 enum { CENTER = 0, VELOCITY = 3, OMEGA = 6, FORCE = 9, MATRIX = 15 };
 
@@ -51,8 +49,6 @@ std::string boat(double h, double density, double y, const std::string &options)
       options + strprintf("\nfix w all mpm/incompressible %.17g 1000 region hull\n", h) +
       "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.01\n";
 }
-
-}    // namespace
 
 // what is lighter or heavier than water sets this in motion, too: the mass of a body and its added
 // mass, which for a light one is all that there is

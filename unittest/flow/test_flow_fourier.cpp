@@ -13,8 +13,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Entries of the vector of the fix. */
 enum { ITERATIONS, RESIDUAL, DIVERGENCE, FILLED, WET };
 
@@ -62,8 +60,6 @@ std::string splashes()
   }
   return wet;
 }
-
-}    // namespace
 
 // the transforms solve the equations themselves, with walls and periods of even and odd numbers of
 // cells

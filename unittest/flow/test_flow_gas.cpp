@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { KINETIC = 5, WALLS = 7 };
 /** From the end of the vector, at which there are two entries about parts of steps. */
 enum { COUNT = -7, HIGHEST, LOWEST, VOLUME, ENERGY };
@@ -93,8 +91,6 @@ std::string splash(const std::string &gas_of)
       "fix w all mpm/incompressible 0.04 1000 " +
       gas_of + "\nfix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.4 max 0.01\n";
 }
-
-}    // namespace
 
 // omega^2 = gamma p A (1/l + 1/l) / m, of second order in time, and without a loss of energy but
 // for 0.07 omega dt per period

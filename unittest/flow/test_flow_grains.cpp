@@ -15,8 +15,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A box of cells of size 1 that is full of points of type 1, and grains of type 2. */
 std::string full(int dim, const std::string &extent, const std::string &faces,
                  const std::string &grains, const std::string &units = "lj")
@@ -95,8 +93,6 @@ std::string array(int n, const std::string &y, double d, double density,
       strprintf("create_atoms 2 region bed\nset type 2 diameter %.17g density/disc %.17g\n", d,
                 density);
 }
-
-}    // namespace
 
 // A single sphere sinks with the velocity of the law, and with what it drags along of the fluid in
 // its own cells; in steps that are longer than its time of relaxation, too

@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { DIVERGENCE = 2, FLOOR = 9 };    // of the vector of the flow
 
 /** A channel along an axis, 20 x 8 (x 8) cells of size 1, which flows towards this side. */
@@ -55,8 +53,6 @@ std::string filled(double h, const char *mouth, const char *velocity,
       strprintf("\nfix w all mpm/incompressible %.17g 1000 ", h) + options +
       "\nfix g all gravity 9.81 vector 0 -1 0\n";
 }
-
-}    // namespace
 
 // A channel that is as wide as its mouth: all points have the velocity of the inflow, to the last
 // digits, and as much goes as comes; in all directions

@@ -16,8 +16,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { ITERATIONS = 0, FILLED = 3, KINETIC = 5, FASTEST = 6, YLO = 9, STRESS = 13 };
 
 /** A closed square of two layers, whose interface has the shape a cos(pi x); the lower one has the
@@ -225,8 +223,6 @@ std::string between(double h, const std::string &fixes)
       strprintf("fix w all mpm/incompressible %.17g 1000 liquid oil 500 region hull\n", h) +
       "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.01\n";
 }
-
-}    // namespace
 
 // oil over water at rest, with a free surface: what both weigh is on the floor
 SERIAL_TEST(Liquids, AtRest)

@@ -18,8 +18,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double H = 0.1;
 
 /** Water in the lower part of a box, with a velocity that has a divergence. */
@@ -49,8 +47,6 @@ void start(MPMFlow &flow)
   flow.parts.cells.sort();
   flow.start();
 }
-
-}    // namespace
 
 // a stage reads points, or what an earlier stage has written
 TEST(Plan, StagesReadWhatOthersWrote)

@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Entries of the vector of the fix; from REGIONS on three for each region. */
 enum { FILLED = 3, KINETIC = 5, FASTEST, WALLS, REGIONS = 14 };
 
@@ -67,8 +65,6 @@ std::string canal(int n, double angle)
       strprintf("fix w all mpm/incompressible %.17g 1000 region canal\n", 1.0 / n) +
       "fix g all gravity 9.81 vector 0 -1 0\n";
 }
-
-}    // namespace
 
 // water at rest over a floor that is no plane of nodes stays at rest, and carries what it should;
 // Archimedes

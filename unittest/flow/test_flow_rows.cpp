@@ -20,8 +20,6 @@
 using namespace MPM_TEST;
 using namespace MPM_NS;
 
-namespace {
-
 /** A number of a cell that does not depend on who has it. */
 double noise(const Grid &grid, int64_t cell)
 {
@@ -77,8 +75,6 @@ struct Cells {
     return all;
   }
 };
-
-}    // namespace
 
 // of the cells that several ranks reach each has its part, and all cells belong to one
 TEST(Rows, CellsOfRanksAreAsManyAsTheirParts)

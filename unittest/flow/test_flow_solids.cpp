@@ -16,8 +16,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 using Complex = std::complex<double>;
 
 enum { FILLED = 3, FASTEST = 6 };
@@ -153,8 +151,6 @@ std::string cavity(int n, double density = 1.0, const std::string &more = "")
                 "wall ylo stick wall xlo stick wall xhi stick %s\n",
                 1.0 / n, more.c_str());
 }
-
-}    // namespace
 
 // a transverse wave in a box full of solid, without viscosity: of second order
 SERIAL_TEST(FlowSolids, WavesOfShear)

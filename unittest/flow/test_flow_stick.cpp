@@ -10,8 +10,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { FILLED = 3, KINETIC = 5, ITERATIONS = 13 };
 
 /** Root mean square of the error of velocities between a cylinder of radius 0.2 that turns and one
@@ -82,8 +80,6 @@ std::string fixes(double h)
                    h) +
       "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5 max 0.02\n";
 }
-
-}    // namespace
 
 // plates with a slope of 1:2 in a periodic box: drag of walls that are oblique to the lattice, with
 // 8 and 16 cells between them

@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { DIVERGENCE = 2, KINETIC = 5, FASTEST = 6 };
 
 /** The longest step of explicit viscosity. */
@@ -58,8 +56,6 @@ std::array<double, 3> momenta(Scene &run)    // and the angular one about the or
   }
   return sum;
 }
-
-}    // namespace
 
 // H2: from rest to a time at which both are not steady, with an error of first order in the step,
 // and to the steady flow in a few steps of any length

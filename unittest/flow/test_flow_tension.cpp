@@ -10,8 +10,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { KINETIC = 5, FASTEST = 6, WALLS = 7 };
 
 /** A drop of radius, density, and tension 1 with n cells in its radius, about a place. r = c (1 +
@@ -63,8 +61,6 @@ std::vector<std::array<double, 2>> peaks_of(const std::vector<double> &t,
     if ((m[k] - m[k - 1]) * (m[k + 1] - m[k]) < 0.0) peaks.push_back({t[k], m[k]});
   return peaks;
 }
-
-}    // namespace
 
 // O3: the pressure is sigma/R, in 3d twice that; what is left of flow and drift, anywhere in a cell
 SERIAL_TEST(Drop, AtRest)

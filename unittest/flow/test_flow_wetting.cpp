@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { FASTEST = 6 };
 
 /** A drop of radius 1 on a floor, a segment of a disk, with n cells in the radius. It begins as
@@ -106,8 +104,6 @@ std::vector<double> meniscus(double W, double angle, int places)
   }
   return y;
 }
-
-}    // namespace
 
 // drops come to rest as segments of disks that meet the floor at the angle, and with the pressure
 // of their radius

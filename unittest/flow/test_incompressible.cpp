@@ -14,8 +14,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Entries of the vector of the fix. */
 enum { ITERATIONS, RESIDUAL, DIVERGENCE, FILLED, WET, KINETIC, FASTEST, WALLS };
 
@@ -161,8 +159,6 @@ double error_of_profile(Scene &run, int n, const std::vector<double> &y,
   }
   return worst;
 }
-
-}    // namespace
 
 // O1 of Taylor and Green, Re = 100, 64 x 64, at t = 1: errors of velocity and pressure, divergence,
 // and points in cells; at rest and in a stream, in the same steps

@@ -10,8 +10,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 double mean(const MaterialPoint &p)
 {
   return -p.pressure();
@@ -741,5 +739,3 @@ TEST(Damage, BadInputIsRefused)
       make("density 1 eos linear 1 strength elastic 1 damage rankine 7 after none")->describe(),
       "density 1, eos linear K=1, strength elastic G=1, damage rankine SIGMA=7 after none");
 }
-
-}    // namespace

@@ -11,8 +11,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 using Stretches = std::array<double, 3>;
 
 double volume(const Stretches &l)
@@ -657,5 +655,3 @@ TEST(Anisotropic, Woven)
     }
   }
 }
-
-}    // namespace

@@ -9,8 +9,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 /* ---------------------------------------------------------------------- shock */
 
 // behind a shock of particle speed u: P = density U u, J = 1 - u/U, E = density u^2/2
@@ -455,5 +453,3 @@ TEST(Definition, BadInputIsRefused)
        {"density 1 eos jwl 1 1 1 1 1 1", "D is missing", 10},
        {"density 1 eos jwl 1 1 1 1 1 1 1 detonate 0 0 0", "T is missing", 15}});
 }
-
-}    // namespace

@@ -9,8 +9,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 /** Equivalent shear stress of a fluid in simple shear, and in a mixed flow, of the same rate. */
 struct Flow {
   double shear, mixed, viscous, apparent;
@@ -166,5 +164,3 @@ TEST(Definition, BadInputIsRefused)
                   {"density 1 eos linear 1 viscosity herschel/bulkley 1 0 0 1", "N = 0"},
                   {"density 1 eos linear 1 viscosity newtonian 1 bulk -1", "ZETA = -1"}});
 }
-
-}    // namespace

@@ -11,8 +11,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 constexpr double DEG = M_PI / 180.0;
 
 /* ---------------------------------------------------------------------- laboratory tests */
@@ -869,5 +867,3 @@ TEST(SoilLaws, BadDefinitionsAreRefused)
                   {"snow 1 0 1 0 1", "out of range"}},
                  "density 1 ");
 }
-
-}    // namespace

@@ -10,8 +10,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 const double ROOT3 = std::sqrt(3.0);
 
 /** n steps of pure shear, together an equivalent strain; the stress is along one direction. */
@@ -820,5 +818,3 @@ TEST(MaterialFiles, FitsOfTheSameMetalAgree)
     EXPECT_NEAR(a / b, 1.0, p.tolerance) << p.one << " " << a << " " << p.other << " " << b;
   }
 }
-
-}    // namespace

@@ -16,8 +16,6 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 const char *const PART_NAME[NPARTS] = {"closed",    "eos",    "strength",
                                        "viscosity", "damage", "thermal"};
 
@@ -153,8 +151,6 @@ std::map<std::string, std::string> files()
     }
   return all;
 }
-
-}    // namespace
 
 TEST(LawTables, AreUpToDate)
 {

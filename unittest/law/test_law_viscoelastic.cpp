@@ -9,8 +9,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 const char *const SOLIDS[] = {"linear 1e6 0.3",
                               "neohookean 1e6 0.3",
                               "hencky 1e6 0.3",
@@ -293,5 +291,3 @@ TEST(Maxwell, WaveSpeed)
     EXPECT_LE(p.wave_speed(), 1.3 * q.wave_speed());
   }
 }
-
-}    // namespace

@@ -11,8 +11,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 constexpr double E1 = 2e8, E2 = 0.5e8, G = 1e6, DEGREE = M_PI / 180.0;
 
 std::string woven(double E, double F, double shear, const std::string &more = "")
@@ -46,8 +44,6 @@ Matrix pinned(double theta, double gamma)
                y = (std::sin(b) - std::cos(t) * std::sin(a)) / std::sin(t);
   return {std::cos(a), x, 0, std::sin(a), y, 0, 0, 0, 1};
 }
-
-}    // namespace
 
 // force per width of warp or weft, at any angle between these, in tension; none in compression, and
 // none across the yarns
@@ -145,8 +141,6 @@ TEST(Woven, BiasExtensionIsATrellis)
   EXPECT_NEAR(errors[0] / errors[1], 100.0, 5.0);
 }
 
-namespace {
-
 /** One point of a surface whose normal and yarns are anywhere in space. */
 struct Cloth {
   std::unique_ptr<Material> material;
@@ -186,8 +180,6 @@ struct Cloth {
     return s;
   }
 };
-
-}    // namespace
 
 // a surface with any normal, turned further in space: the stress of the law in its own axes,
 // turned; also of wood, whose thickness changes such that nothing acts across. The deformation

@@ -19,8 +19,6 @@ using namespace MPM_NS;
 using namespace material_testing;
 using MPM_TEST::text_of_file;
 
-namespace {
-
 const char *const PART_NAME[NPARTS] = {"", "eos", "strength", "viscosity", "damage", "thermal"};
 
 /** Adds "part name" of all laws that a definition uses; a closed law comes third, after density. */
@@ -54,8 +52,6 @@ std::vector<std::filesystem::path> material_files()
     if (entry.path().extension() == ".mpm") files.push_back(entry.path());
   return files;
 }
-
-}    // namespace
 
 TEST(Library, AllLawsAreTested)
 {
@@ -240,8 +236,6 @@ TEST(Library, WeldoxFailsAtTheStrainsOfItsTests)
 
 /* ---------------------------------------------------------------------- units */
 
-namespace {
-
 /** Numbers in other units over those in SI. */
 struct Scales {
   const char *style;
@@ -384,8 +378,6 @@ std::vector<double> response(const Material &material, const Scales &s)
   return all;
 }
 
-}    // namespace
-
 TEST(Library, LawsHaveNoUnitsOfTheirOwn)
 {
   const Scales si = {"si", 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
@@ -413,8 +405,6 @@ TEST(Library, LawsHaveNoUnitsOfTheirOwn)
 }
 
 /* ---------------------------------------------------------------------- extremes */
-
-namespace {
 
 /** Rates of strain, steps, volumes, and temperatures far from those of any test of the material. */
 void stand_extremes(const Material &material)
@@ -446,8 +436,6 @@ void stand_extremes(const Material &material)
         expect_finite(p);
       }
 }
-
-}    // namespace
 
 TEST(Library, LawsStandExtremes)
 {

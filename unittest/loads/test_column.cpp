@@ -13,8 +13,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 // soil of 200 m/s, and of a quarter of its stiffness above 12 m, on rock of 3.5 times the speed
 const std::string GROUND = "variable E equal 2000*200^2*2.5\n";
 const std::string SIDE = " 346.41 200 ";
@@ -75,8 +73,6 @@ double difference(Scene &run, int axis, int steps, double top = 19.0)
   }
   return off / most;
 }
-
-}    // namespace
 
 // Level ground in two layers moves like its column to 1 %, next to its sides and in the middle;
 // with dashpots of a far side at rest, or walls, it does not

@@ -14,8 +14,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 // density 1, Poisson number 1/4, speed of pressure waves 1
 constexpr double CS = 0.57735026918962576;
 const std::string MATERIAL = "fix m all mpm/material density 1 linear 0.83333333333333333 0.25\n";
@@ -48,8 +46,6 @@ std::array<double, 2> waves(Scene &run, double low, double high, bool shear)
   }
   return {right / n, left / n};
 }
-
-}    // namespace
 
 // A pulse of waves of 20 cells along the normal of the face, wherever that is in a cell: reflection
 // below 0.01, and what leaves is what the ledger has lost, to 1 %

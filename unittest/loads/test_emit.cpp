@@ -10,8 +10,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double U = 2.0, B = 0.1, RHO = 1000.0;
 
 /** A plug of width B that flows along x from a mouth of length 0.1, nearly without stiffness. */
@@ -67,8 +65,6 @@ void spacings(Scene &run, double spacing, double &least, double &most)
     }
   }
 }
-
-}    // namespace
 
 // benchmark S5: the mass is that of the flow, and points are on their lattice, at any velocity and
 // offset of the mouth

@@ -16,8 +16,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 // density 1, Poisson number 1/4, speed of pressure waves 1
 constexpr double CS = 0.57735026918962576;
 const std::string MATERIAL = "fix m all mpm/material density 1 linear 0.83333333333333333 0.25\n";
@@ -184,8 +182,6 @@ std::array<double, 2> echo_of_dashpots(const Incoming &w)
   // past the critical angle the pressure wave only goes along the dashpots
   return {slowness < 1.0 ? std::abs(r[0]) : 0.0, std::abs(r[1])};
 }
-
-}    // namespace
 
 PARAMETER_TEST(Oblique, Leaves, Incoming,
                Values(Incoming{false, 0, 4, 180, 90, 22, {150.0, 150.0}},

@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double E = 1e6, NU = 0.3, MU = E / (2.0 * (1.0 + NU));
 
 /** A load T that grows to its value within 1000 steps, and rest after that. */
@@ -58,8 +56,6 @@ double stretch_at_rest(const std::string &scene)
   EXPECT_LE(run.fix("rest")->compute_scalar(), 1e-4);
   return stretch(run);
 }
-
-}    // namespace
 
 // Layers at any depth give all of the force, at the surface. Half a spacing below it, forces on
 // nodes are the gradients of quadratic functions summed over all layers, those of a uniform stress.

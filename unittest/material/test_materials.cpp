@@ -11,8 +11,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 /* ---------------------------------------------------------------------- */
 
 TEST(Math, FunctionsMatchLibrary)
@@ -1052,5 +1050,3 @@ TEST(Definition, EveryCombinationThatIsAllowed)
         "density 1 eos linear 1 strength j2 1 0 hardening power 1 0.5"})
     EXPECT_NO_THROW(make(text)) << text;
 }
-
-}    // namespace

@@ -14,8 +14,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 constexpr double E = 1000.0;
 
 struct Surface {
@@ -99,8 +97,6 @@ Matrix diagonal(double a, double b)
 {
   return {a, 0, 0, 0, b, 0, 0, 0, 1};
 }
-
-}    // namespace
 
 // stretches along both axes: nothing acts across, and the rest is that of the law with the
 // thickness which follows

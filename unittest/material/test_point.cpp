@@ -14,8 +14,6 @@ using namespace material_testing;
 using MPM_NS::MixedControl;
 using MPM_TEST::Scene;
 
-namespace {
-
 /** Root of a function that changes its sign between two values. */
 double root(const std::function<double(double)> &f, double a, double b)
 {
@@ -83,8 +81,6 @@ std::map<std::string, std::vector<double>> drive(const std::string &path,
   auto table = read_table(file.name);
   return table;
 }
-
-}    // namespace
 
 /* ---------------------------------------------------------------------- mixed control */
 

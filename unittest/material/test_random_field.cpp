@@ -15,8 +15,6 @@ using namespace material_testing;
 using MPM_NS::RandomField;
 using MPM_TEST::Scene;
 
-namespace {
-
 /** Needs FFTW: where the build lacks it, only the error is tested. */
 class Random : public ::testing::Test {
   void SetUp() override
@@ -55,8 +53,6 @@ template <class Check> void at_places(double spacing, const Check &check)
     check(x);
   }
 }
-
-}    // namespace
 
 TEST(RandomDefinition, Errors)
 {

@@ -13,8 +13,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 constexpr int COMPONENT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
 /** Motions of the points of a batch. */
@@ -231,8 +229,6 @@ void expect_tangents(const Sample &sample, const char *isa, unsigned seed)
 }
 
 const char *const instruction_sets[] = {"reference", "avx2", "avx512"};
-
-}    // namespace
 
 TEST(Tangent, IsTheDerivativeOfTheUpdate)
 {

@@ -15,8 +15,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 /** Sets the temperature of a point, as conduction does. */
 void warm_to(MaterialPoint &p, double T)
 {
@@ -51,8 +49,6 @@ std::vector<Sample> expandable()
 }
 
 constexpr const char *NO_HEAT = "adiabatic 1e30 300 0";    // a point whose own heat is nothing
-
-}    // namespace
 
 // with an expansion, a law has the stress, speed, and energy that it has without it at F/theta
 TEST(Expansion, IsTakenOutOfTheMotionOfAnyLaw)
@@ -326,8 +322,6 @@ TEST(Expansion, BadInputIsRefused)
 
 /* ---------------------------------------------------------------------- heat that is conducted */
 
-namespace {
-
 /** Equations of state with an internal energy, dp/dE at J = 1, and the bulk modulus without
  *  energy. */
 struct WithEnergy {
@@ -340,8 +334,6 @@ const WithEnergy with_energy[] = {
     {"ideal/gas 1.4 pressure 1e5", 1.2, 0.4, 0},
     {"stiffened/gas 4.4 6e8 pressure 1e5", 1000, 3.4, 0},
 };
-
-}    // namespace
 
 // what conduction brings between steps is in the internal energy, and so in the pressure, whatever
 // the temperature has to do with the heat; without motion it is no stored energy
@@ -1012,8 +1004,6 @@ TEST(Sources, DetonationProductsConduct)
 
 /* ---------------------------------------------------------------------- melting */
 
-namespace {
-
 const std::string METAL =
     "density 1000 eos linear 1e6 strength j2 5e5 1e3 hardening linear 1e4 "
     "viscosity newtonian 10 liquid thermal adiabatic 1e30 300 0 melt 400 1e30";
@@ -1024,8 +1014,6 @@ void melt(MaterialPoint &p, double f)
   warm_to(p, 400);
   p.batch.history[row(p.material, "molten")][0] = f;
 }
-
-}    // namespace
 
 // a melt is Newtonian, whatever the solid was; what solidifies is a new solid without shear stress
 TEST(Melting, IsALiquidThenANewSolid)

@@ -15,8 +15,6 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 /** Iterations until f changes x by less than 1e-13 of its size. */
 template <class F> int iterations(std::vector<double> &x, bool helped, const F &f)
 {
@@ -35,8 +33,6 @@ template <class F> int iterations(std::vector<double> &x, bool helped, const F &
   }
   return 0;
 }
-
-}    // namespace
 
 // Two nodes that share a light body: one number tells how the rest goes down
 TEST(Aitken, OneSlowDirectionTakesAFewIterations)

@@ -18,8 +18,6 @@
 using namespace MPM_NS;
 using ::testing::HasSubstr;
 
-namespace {
-
 /** n cells along each axis of a unit square or cube, distorted by a smooth map: kind 0: quadrangles
  *  or hexahedra, 1: each divided into triangles or tetrahedra. The side x = 0 is the group
  *  "left". */
@@ -96,8 +94,6 @@ std::string failure(const std::function<void()> &f)
   }
   return "";
 }
-
-}    // namespace
 
 // Functions sum to one and give back positions and linear functions at any place, found from any
 // hint; gradients are their derivatives

@@ -23,8 +23,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 using Reader = std::function<void(const std::string &file)>;
 
 struct Format {
@@ -389,5 +387,3 @@ TEST_P(BadFilesInLammps, AreExplained)
   EXPECT_TRUE(contains(text, defect.error)) << "expected: " << defect.error << "\nfound: " << text;
   EXPECT_TRUE(contains(text, file.name)) << "which file: " << text;
 }
-
-}    // namespace

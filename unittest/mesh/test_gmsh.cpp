@@ -16,8 +16,6 @@
 using namespace MPM_NS;
 using ::testing::HasSubstr;
 
-namespace {
-
 Mesh read(const std::string &text)
 {
   std::istringstream in(text);
@@ -137,5 +135,3 @@ TEST(Mesh, Refused)
               HasSubstr("elements 8 and 9"));
   EXPECT_THROW(read_gmsh("no such file"), std::runtime_error);
 }
-
-}    // namespace

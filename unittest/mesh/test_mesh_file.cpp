@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 const std::string space_2 = space("lj", "f f f", "-2 4 -2 4 -2 4", 2);
 
 std::string make(const std::string &file, const std::string &style, const std::string &more = "")
@@ -334,5 +332,3 @@ SERIAL_TEST(MeshFile, RefusesMistakes)
   EXPECT_THAT(failure(replaced(inp, "1.5", "1.5e999")), HasSubstr("is not a coordinate"));
   EXPECT_THAT(failure(""), HasSubstr("not a mesh file of Gmsh"));
 }
-
-}    // namespace

@@ -13,8 +13,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A mesh of cells of size h from the origin, inside bent by a part of these. */
 std::string cells(Kind kind, double h, std::array<int, 3> n, double bent = 0.0)
 {
@@ -56,8 +54,6 @@ std::string slide(Kind kind, const std::string &mesh, const std::string &law,
       "\nfix down all gravity 1 vector 0 -1 0\nvelocity b2 set 1 0 0\nfix d all mpm/dt 0.4 until "
       "0.9\nvariable v equal vcm(b2,x)\n";
 }
-
-}    // namespace
 
 // Coulomb's law; without friction the block keeps its velocity, as nothing is in its way
 SERIAL_TEST(MeshContact, BlockThatSlides)
@@ -184,8 +180,6 @@ SERIAL_TEST(MeshContact, BlocksAtRest)
   }
 }
 
-namespace {
-
 /** A block on a block between smooth walls, under a load on the upper side of the mesh. parts: the
  *  upper one is two of them. */
 std::string pressed(const std::string &mesh, const std::string &load, bool parts)
@@ -200,8 +194,6 @@ std::string pressed(const std::string &mesh, const std::string &load, bool parts
       "\nfix touch all mpm/mesh/contact g b1 b2" + (parts ? " b3" : "") +
       "\ntimestep 5e-4\nthermo_modify norm no\n";
 }
-
-}    // namespace
 
 // A load on a side of the mesh is of the body that is there: the force of contact becomes the load,
 // and each step changes the momentum of the upper block by load and contact

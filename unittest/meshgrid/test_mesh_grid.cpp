@@ -13,8 +13,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Quarter of a tube from radius 1 to 2: faces xlo and xhi are the bore and the outside. */
 std::string tube(Kind kind, int n)
 {
@@ -52,8 +50,6 @@ double entry(Scene &run, int k)
 {
   return run.lmp->modify->get_fix_by_id("g")->compute_vector(k - 1);
 }
-
-}    // namespace
 
 // Lame's solution of a tube under pressure: order 2, both frames
 SERIAL_TEST(MeshGrid, TubeUnderPressure)

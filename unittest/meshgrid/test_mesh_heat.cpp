@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 using Map = std::function<std::array<double, 3>(double, double, double)>;
 
 /** A block of 1 x 1 x 1 (2d: 1 x 1), whose inner nodes are moved by a part of a cell, of rectangles
@@ -63,8 +61,6 @@ double out(Scene &run, int k)
 {
   return run.lmp->modify->get_fix_by_id("h")->compute_vector(k);
 }
-
-}    // namespace
 
 // A temperature that is linear in x is that of any mesh of triangles and tetrahedra, exactly, and
 // so is its flux; of quadrangles and hexahedra where they are not bent, as points integrate over

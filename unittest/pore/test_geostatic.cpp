@@ -13,8 +13,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double G = 9.81, DENSITY = 1800.0;
 const char *const SOIL = "linear 1e7 0.3";
 
@@ -43,8 +41,6 @@ double fall(Scene &run, double t)
     for (int d = 0; d < 3; d++) most = std::max(most, std::fabs(run.v()[i][d]));
   return over_ranks(most) / (G * run.lmp->force->ftm2v * t);
 }
-
-}    // namespace
 
 // forces on nodes are zero wherever these are, the stress is the weight above
 SERIAL_TEST(Geostatic, StaysAtRest)

@@ -13,8 +13,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double G = 9.81, POROSITY = 0.4;
 constexpr double GRAINS = 2650.0, WATER = 1000.0, DRY = (1.0 - POROSITY) * GRAINS;
 
@@ -129,8 +127,6 @@ double vertical(const Scene::State &s)
   return s.stress[1];
 }
 
-}    // namespace
-
 // Velocities of soil and water that fill a periodic box fade towards each other with the rate of
 // drag, exactly, and their momentum stays.
 PARAMETER_TEST(Relaxation, IsExact, std::string,
@@ -225,8 +221,6 @@ PARAMETER_TEST(Still, StaysAtRest, std::string,
   EXPECT_LT(fabs(run.compute_vector()[10]), 1.0e-12);
 }
 
-namespace {
-
 /** A bed of soil of 0.5 m under water up to this height, whose state at rest mpm_geostatic gives.
  *  The floor is off nodes by a part of a cell. */
 std::string bed(int dim, double h, double height, const std::string &options, double offset)
@@ -242,8 +236,6 @@ std::string bed(int dim, double h, double height, const std::string &options, do
   return c.text() + "fix walls all mpm/boundary ylo slip\nfix g all gravity 9.81 vector 0 -1 0\n";
 }
 const double BUOYANT = (1.0 - POROSITY) * (GRAINS - WATER) * G;
-
-}    // namespace
 
 // level ground in water at rest, as mpm_geostatic finds it: what is left of the forces of both, and
 // the stress of soil
@@ -640,8 +632,6 @@ SERIAL_TEST(Drag, OfDarcyDependsOnPorosity)
   EXPECT_NEAR(run.lmp->update->dt * sqrt(c2) / c.h, 1.0, 1e-3);
 }
 
-namespace {
-
 /** A plug of soil in the middle of a column of water, of the permeability k [m/s]. */
 Column plug(double k, const std::string &options)
 {
@@ -682,8 +672,6 @@ double velocity_of_soil(Scene &run, double from, double to)
       (run.lmp->update->ntimestep - run.lmp->update->atimestep) * run.lmp->update->dt;
   return (height() - first) / (stop - start);
 }
-
-}    // namespace
 
 // A plug of soil in a closed column of water sinks, or rises if its grains are light, as fast as
 // the drag of the water that it pushes aside allows: the superficial velocity of this is that of

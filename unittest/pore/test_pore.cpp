@@ -89,8 +89,6 @@ SERIAL_TEST(Undrained, PressureIsEven)
       EXPECT_LT(scatter_of_pressure(Kf, k, ""), 0.01);
 }
 
-namespace {
-
 /** A block of stiff soil of 1 m, a cell of 0.1 m from the sides of its box or between them, that
  *  loses water through faces; pressures at first are anything up to 1e4. */
 std::string leaking(const std::string &box, double spacing, double origin, const std::string &faces,
@@ -118,8 +116,6 @@ double greatest_pressure(Scene &run, Water &water, int runs, int steps)
 }
 // what the motion of so stiff a soil can add: twice K_f/(n M)
 const double NEVER_ABOVE = 1e4 * (1.0 + 2.0 * 2.2e7 / 0.4 / (1e3 * MODULUS));
-
-}    // namespace
 
 // Nodes beside a body have next to nothing of it where points are in the middle of cells: a side
 // that moves through cells, or is there by the place of nodes or with one point for each cell
@@ -161,8 +157,6 @@ SERIAL_TEST(Surface, NextToASide)
   }
 }
 
-namespace {
-
 /** Water that has come into soil below a free surface with this slope, over the flux times area and
  *  time; above the height bottom if this is not 0, with a surface there, too. */
 double came_in(double degrees, double h, double origin, double bottom = 0.0)
@@ -181,8 +175,6 @@ double came_in(double degrees, double h, double origin, double bottom = 0.0)
             "fix dt all mpm/dt 0.3\nrun 20\n");
   return run.fix("water")->compute_scalar() / (surfaces * 1e-6 * 2.0 / cos(slope) * run.time());
 }
-
-}    // namespace
 
 // The water of a flux is its area times that of the free surface, which was up to 9 % too small,
 // also with small cells
@@ -374,8 +366,6 @@ SERIAL_TEST(Walls, ThatSeparate)
   EXPECT_LT(measured("fastest", fastest), 0.002);
 }
 
-namespace {
-
 /** A column of 1 m with 10 cells above a floor, which a wall of this kind holds, under its weight;
  *  water has the pressure of rest and this gradient more, and leaves at the top. offset: of the
  *  floor from nodes, in cells. */
@@ -398,8 +388,6 @@ double mean_velocity(Scene &run, int d)
   for (int i = 0; i < run.n(); i++) sum += run.v()[i][d] / run.n();
   return sum;
 }
-
-}    // namespace
 
 // friction of walls is that of grains: a saturated column slides on its floor as one of its
 // submerged weight
@@ -683,8 +671,6 @@ SERIAL_TEST(DryField, PaysNothing)
   EXPECT_GT(water->stable_dt(*all[1], tag), 1e300);
 }
 
-namespace {
-
 /** Greatest velocity of points over what the weight alone would give them in the time t. */
 double fall(Scene &run, double t)
 {
@@ -699,8 +685,6 @@ std::string ground(int n, const std::string &water, const std::string &material,
   return replaced(column(n, water, material, 1.2, offset), "fix water",
                   "fix g all gravity 9.81 vector 0 -1 0\nfix water");
 }
-
-}    // namespace
 
 // level ground of 20 cells is at rest on nodes wherever these are, with stresses that are the
 // weight above

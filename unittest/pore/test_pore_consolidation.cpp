@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Steps of this part of the limit change the results by 1e-4 of them. */
 constexpr double LONG = 0.8;
 
@@ -67,8 +65,6 @@ double at_origin(Water &water, double side)
 struct At {
   double T, value;
 };
-
-}    // namespace
 
 // Mandel: a strip between rigid smooth plates which are pressed together, drained at its sides. The
 // pressure in its middle rises first, as the sides become stiffer there. A quarter of the strip;
@@ -146,8 +142,6 @@ PARAMETER_TEST(Cryer, PressureRisesFirst, const char *, Values("", " every auto"
   for (const auto &at : {At{0.1, 1.194103}, At{0.2, 0.681727}})
     EXPECT_NEAR(measured(strprintf("T %g", at.T), pressure(at.T)) / at.value, 1.0, 0.02);
 }
-
-namespace {
 
 /** A column of large strain: stress of the soil over its modulus, compression positive, and
  *  permeability over that of the start, both at a stretch. */
@@ -265,8 +259,6 @@ const Large::Laws SQUARED = {LINEAR, "squared", hencky, squared},
                   NH_CONSTANT = {NH, "constant", neohooke, constant};
 const std::vector<double> ALL = {0.05, 0.1, 0.2, 0.5, 1.0};
 
-}    // namespace
-
 void PrintTo(const Large &column, std::ostream *out)
 {
   *out << column.name;
@@ -374,8 +366,6 @@ PARAMETER_TEST(
   }
 }
 
-namespace {
-
 /** Pressure at a depth over that at the base at first, and degree of consolidation, where the
  *  weight of the soil is all on its water first. */
 double of_weight(double z, double T)
@@ -400,8 +390,6 @@ double volumes(Scene &run, double Kf, std::vector<double> &storage)
   }
   return sum;
 }
-
-}    // namespace
 
 // A column that consolidates under its own weight. The water that has left is the settlement, and
 // what the water in the pores gets of its volume when its pressure falls

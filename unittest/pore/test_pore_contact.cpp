@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double SUBMERGED = 990.0 / 1990.0;    // weight in water over that of soil and water
 
 /** A layer of saturated soil, 1 m high with 10 cells, periodic along x, in a box from y = -0.4 on;
@@ -83,8 +81,6 @@ double friction(Scene &run, double slope, double coefficient)
   const double held = 9.81 * cosine * slope - (of_soil(run).v[0] - before.v[0]) / 0.1;
   return held / (9.81 * cosine * coefficient * (1990.0 - 1000.0 * (high - low)) / 1990.0);
 }
-
-}    // namespace
 
 // an infinite slope with seepage along it: friction is that of the submerged weight, not half of
 // the total one

@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double A =
     1e7;    // Darcy: pressure gradient per flow, k = 1e-3 with a unit weight of 1e4
 
@@ -34,8 +32,6 @@ std::string stiff(const std::string &options, double bottom, double top, double 
              "density 2e16 linear 1e12 0.0", 1.0, offset, "ylo yhi") +
       "timestep 4e-4\n";
 }
-
-}    // namespace
 
 // steady flow solves the quadratic equation, up and down, with and without inertia
 SERIAL_TEST(Steady, IsTheRoot)
@@ -146,12 +142,8 @@ SERIAL_TEST(Units, Metal)
   }
 }
 
-namespace {
-
 const char *const FREE = "initial v_p free pressure 0 forchheimer number 50 ",
                   *const MOVES = "formulation u-v-p ";
-
-}    // namespace
 
 TEST(Ranks, Agree)
 {

@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double GRAINS = 3e-5, WATER = 2e-4, STIFF = 2.2e8 / 0.4;
 
 /** Undrained soil, a cube of 0.4 m, that is heated evenly by 10 K in 20 ms. axes: of the box. */
@@ -46,8 +44,6 @@ double pressure(const std::string &scene)
   for (int i = 0; i < run.n(); i++) warmth += (T->vector_atom[i] - 293.0) / run.n();
   return sum / n / warmth;
 }
-
-}    // namespace
 
 // no room to expand: water and grains press on each other; a body that is free to expand: what
 // water takes more than pores do

@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 struct Layer {
   std::string region;
   std::string law;    ///< of its permeability
@@ -47,8 +45,6 @@ double flow(Scene &run, double dt, double end)
   EXPECT_NEAR(flows[0] / flows[1], -1.0, 1e-4);
   return flows[0];
 }
-
-}    // namespace
 
 // layers of a tenth and a hundredth of the permeability one behind the other: the resistance is
 // that of all

@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 const std::string MOVES = "formulation u-v-p ";
 
 /** Frequency and decay of the fast mode in a signal that has a slow one, of a known root, too: the
@@ -70,8 +68,6 @@ std::array<double, 2> fast_mode(const std::vector<double> &t, const std::vector<
     }
   return fast;
 }
-
-}    // namespace
 
 // The roots of u-v-p for the fast wave of a sealed column, as tabulated; the slow motion has its
 // own ones

@@ -13,8 +13,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double AREA = 0.16;
 
 /** A column of saturated soil of 1 m and 10 cells, 4 cells wide and periodic, on a smooth floor
@@ -41,8 +39,6 @@ double share_of_water(double K)
 {
   return K / 0.4 / (MODULUS + K / 0.4);
 }
-
-}    // namespace
 
 // undrained compression: the body bears the whole load, of which the water has what its stiffness
 // is in that of both

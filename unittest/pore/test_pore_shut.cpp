@@ -12,8 +12,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A block between a floor and a lid that comes down with this speed; its grains have 0.6 of its
  *  volume. */
 std::string pressed(const std::string &law, double speed)
@@ -24,8 +22,6 @@ std::string pressed(const std::string &law, double speed)
       strprintf("fix lid all mpm/boundary yhi slip velocity 0 %g 0\n", -speed) +
       "fix water all mpm/pore 2.2e6 1000 9810 soil m 0.4 " + law + "\nfix dt all mpm/dt 0.3\n";
 }
-
-}    // namespace
 
 // a warning tells of it once; nothing negative and no NaN comes out, and water that cannot leave is
 // kept

@@ -14,8 +14,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double WEIGHT = 9810.0;    // of water, Pa/m
 
 /** A quantity of points by a compute mpm/atom, which the scene defines with this ID. */
@@ -87,8 +85,6 @@ double infiltration(double alpha, double K, double range, double q0, double q1, 
       4.0 * (q1 - q0) * std::exp(0.5 * (L - Z)) * std::exp(-0.25 * T) * sum;
   return std::log(k) / alpha;
 }
-
-}    // namespace
 
 // dS/dp by differences, the way back from the water to its pressure, and the model of Mualem
 SERIAL_TEST(Retention, Functions)
@@ -223,8 +219,6 @@ SERIAL_TEST(Infiltration, IntoDrySand)
   EXPECT_LT(std::fabs(depth[1]), 0.7 * std::fabs(depth[0]));
 }
 
-namespace {
-
 /** Greatest velocity of points over what the weight alone would give them in the time t. */
 double fall(Scene &run, double t)
 {
@@ -235,8 +229,6 @@ double fall(Scene &run, double t)
 }
 const char *const SAND = "2.2e8 1000 9810 soil m 0.4 constant 1e-3 ",
                   *const DRIES = "retention vangenuchten 3e-4 2.2 saturation 0.1 1 ";
-
-}    // namespace
 
 // level ground with a water table in it is at rest, with the weight of the water that it has
 SERIAL_TEST(Geostatic, SuctionAboveTheTable)
@@ -396,8 +388,6 @@ SERIAL_TEST(Surface, RainAndSeepage)
   }
 }
 
-namespace {
-
 /** A surface that stays full takes water into dry soil, from -10 m: 1 m with n cells. K: of the
  *  water. */
 std::string absorbs(int n, double K, double end)
@@ -415,8 +405,6 @@ std::string absorbs(int n, double K, double end)
                 "run 100000\n",
                 end);
 }
-
-}    // namespace
 
 // Absorption into dry soil, whose water grows with the root of the time: 0.0386 m after 0.3 s,
 // 0.0585 and 0.0494 with 10 and 20 finite volumes. The front does not hold it back, also where the
@@ -448,8 +436,6 @@ SERIAL_TEST(Surface, StiffWater)
   expect_error(absorbs(10, 2.2e9, 0.02), "use a smaller bulk modulus of the water");
 }
 
-namespace {
-
 const char *const OF_BLOCKS = "variable p atom 0.4*(x-4)\nvariable k atom 0.01*(1+y)\n";
 /** Two blocks of soils that dry and one that does not, which collide. */
 std::string blocks(const std::string &more)
@@ -461,8 +447,6 @@ std::string blocks(const std::string &more)
       "0.01 " +
           more);
 }
-
-}    // namespace
 
 TEST(Ranks, Agree)
 {

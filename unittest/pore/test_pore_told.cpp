@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A column with the pressure 1 kPa at first, which the load bears, and 300 Pa outside. options: of
  *  fix mpm; more: of fix mpm/pore. */
 std::string jump(const std::string &options, const std::string &more)
@@ -25,8 +23,6 @@ std::string jump(const std::string &options, const std::string &more)
       "region top block INF INF 0.95 INF INF INF\ngroup top region top\n"
       "variable fy equal -1e3*lx/count(top)\nfix load top addforce 0 v_fy 0\n";
 }
-
-}    // namespace
 
 // Water leaves with the pressure outside, however far that at the surface is from it: what is left
 // of its energy is dissipated. Where the pressure jumps at the surface both are far apart for a

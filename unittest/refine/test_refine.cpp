@@ -10,11 +10,7 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 const char *const law = "fix m all mpm/material density 1 linear 1 0.25\n";
-
-}    // namespace
 
 // A velocity that is linear in space stays so at all kinds of rims, faces, edges, and corners:
 // nothing but points between that move apart changes it, and in the total frame nothing at all
@@ -269,8 +265,6 @@ SERIAL_TEST(Axisymmetric, VelocityStaysLinear)
   }
 }
 
-namespace {
-
 /** Lattices of a body of revolution: one with the spacing h, or, with a plane where they meet, h on
  *  one side and h/2 on the other. */
 std::string rings(double h, const std::string &options, double r0, double r1, double meet,
@@ -357,8 +351,6 @@ TEST(Rim, CracksAreTold)
     EXPECT_EQ(said.size(), c.told ? 1u : 0u) << c.weak;
   }
 }
-
-}    // namespace
 
 // Lame's cylinder under pressure: with a finer ring around the bore it is nearly as right as if all
 // of it were fine

@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 struct Part {    // what a body has on the lattice of a level: spacing 1, 1/2, ...
   char body;
   int level;
@@ -123,8 +121,6 @@ Motion motion(Scene &run, const std::vector<Part> &parts, bool all)
 
 const char *const HEAD_ON = "variable v atom 0.5*(x<6)-0.3*(x>6)\nvelocity all set v_v 0 0\n";
 
-}    // namespace
-
 // Two blocks collide, with the jump of the spacing in one or both of them: momentum is kept to
 // round-off, and the other body gets what it does on one lattice, between what it gets on the
 // coarse and on the fine one (which lose energy where they meet, by their spacing)
@@ -212,8 +208,6 @@ SERIAL_TEST(Collision, In3d)
   }
 }
 
-namespace {
-
 /** A below B, along x, with periodic sides: at rest under their weight. */
 std::string pile(const std::vector<Part> &parts, const std::string &options,
                  const std::string &law = "")
@@ -224,8 +218,6 @@ std::string pile(const std::vector<Part> &parts, const std::string &options,
       "fix floor all mpm/boundary xlo slip\nfix g all gravity 1 vector -1 0 0\nfix dt all mpm/dt "
       "0.4\n";
 }
-
-}    // namespace
 
 // A block rests on another one: they press on each other with its weight, and the stress is that of
 // the weight above, as on one lattice. With affine terms in place of gradients, forces at the rim

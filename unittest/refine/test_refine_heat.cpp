@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 const char *const solid =
     "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n";
 
@@ -24,8 +22,6 @@ struct Lattices {
     *out << p.dim << "d " << p.levels << " levels " << p.shape << " " << p.options;
   }
 };
-
-}    // namespace
 
 // Between faces with two temperatures, the temperature of a body at rest is linear in space, and
 // heat that flows is that of the whole section: to round-off with linear functions. With others,

@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Column of a history variable of the only material, by tag, gathered on all ranks. */
 std::vector<double> history(Scene &run, const std::string &name)
 {
@@ -226,5 +224,3 @@ TEST(Crack, EnergyDoesNotDependOnTheSpacing)
     EXPECT_NEAR(crack_energy("shape linear transfer flip 1 scheme musl", h, all), 1.05, 0.02);
   }
 }
-
-}    // namespace

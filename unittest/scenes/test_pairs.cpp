@@ -20,8 +20,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Where lines of a choice go: before the box; options of fix mpm; the law; fixes, which are
  *  defined again after a restart file; commands between two runs. */
 enum Place { HEAD, OPTION, LAW, FIX, BETWEEN };
@@ -318,8 +316,6 @@ void write_scene(const std::string &folder, int dim, int k, const Chosen &chosen
         "# " + names(chosen) + "\n" + c.scene + "run 8\nwrite_restart middle\n" + rest +
             "clear\nread_restart middle\n" + c.again + rest);
 }
-
-}    // namespace
 
 /** Does the map from IDs find all atoms, and nothing twice? (Chains of copies must end.) */
 void check_map(Scene &run)

@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Density, velocity and pressure of a gas. */
 struct GasState {
   double rho, u, p;
@@ -648,5 +646,3 @@ TEST(FreeFlight, SolidsForgetNothing)
     EXPECT_NEAR(run.points().F[0][1], 1000 * DT * 50.0, 1e-9);
   }
 }
-
-}    // namespace

@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 // Spall. A pulse of pressure with the peak P and a straight tail of length L returns from the free
 // rear surface of a plate as tension. In an acoustic material (pressure linear in the strain) the
 // tension at a depth x is at most 2 x P/L, so that the plate breaks at x = S L/(2 P) when it bears
@@ -334,5 +332,3 @@ TEST(Chain, SolitaryWave)
   EXPECT_NEAR(measured("F3 peak force/exact", found.force / exact.force), 1.0, 0.1);
   EXPECT_NEAR(measured("F3 velocity of the last sphere/exact", found.last / exact.last), 1.0, 0.1);
 }
-
-}    // namespace

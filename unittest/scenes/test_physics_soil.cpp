@@ -10,8 +10,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double DEG = M_PI / 180.0, g = 9.81;
 
 /** A layer on a rough plane with an angle, periodic along it; gravity comes within a time, so that
@@ -246,5 +244,3 @@ TEST(RoughFloor, ColumnGainsNoEnergy)
     EXPECT_LT(measured("speed of sand at the end", fastest), 1.0);
   }
 }
-
-}    // namespace

@@ -16,8 +16,6 @@
 using namespace MPM_TEST;
 using namespace MPM_NS;
 
-namespace {
-
 /** The rank of a cell: patches of 5 x 7 cells. */
 int rank_of(const int *i)
 {
@@ -127,8 +125,6 @@ CellScene pools(int dim, int n)
   };
   return scene;
 }
-
-}    // namespace
 
 TEST(CellSystem, IsThatOfOneRank)
 {

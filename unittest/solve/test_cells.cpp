@@ -14,8 +14,6 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 double largest_difference(const CellSystem &system, const std::vector<double> &a,
                           const std::vector<double> &b)
 {
@@ -40,8 +38,6 @@ CellScene odd_scene(int dim)
   scene.shift[2] = -3;
   return scene;
 }
-
-}    // namespace
 
 // A x is what the equations say, written down by index; faces that images have, too, count once.
 TEST(CellOperator, IsTheEquations)

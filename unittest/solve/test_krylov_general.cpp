@@ -16,8 +16,6 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 System::Operator diagonal(const std::vector<double> &d)
 {
   return [=](const double *x, double *y) {
@@ -107,8 +105,6 @@ double convection_solution(int n, double c, int i)
   return (i - (n + 1) * std::expm1(i * std::log(r)) / std::expm1((n + 1) * std::log(r))) /
       (2.0 * c);
 }
-
-}    // namespace
 
 // In full it needs as many iterations as the minimal polynomial has roots.
 TEST(FlexibleGMRES, DegreeOfMinimalPolynomial)

@@ -21,8 +21,6 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 /** Blocks of one triangle that rank me of n gives, some of them to rows that are not its own, and
  *  some of a place where it has given one. */
 std::vector<MatrixBlock> blocks_of(int me, int n, int rows, int width)
@@ -55,8 +53,6 @@ Eigen::MatrixXd dense(const std::vector<std::vector<MatrixBlock>> &lists, int ro
         }
   return A;
 }
-
-}    // namespace
 
 // Products, blocks, the next level, and the whole matrix on ranks of which one has no rows are
 // those of the dense matrix.

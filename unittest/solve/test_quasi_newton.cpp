@@ -16,8 +16,6 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -46,8 +44,6 @@ VectorXd recursion(const std::deque<Pair> &pairs, const MatrixXd &H0, VectorXd f
     d += (along[k] - pairs[k].y.dot(d) / pairs[k].s.dot(pairs[k].y)) * pairs[k].s;
   return d;
 }
-
-}    // namespace
 
 // more pairs than there is room for, parts of corrections, and pairs of several sequences with
 // other forces in between

@@ -15,8 +15,6 @@
 using namespace MPM_TEST;
 using namespace MPM_NS;
 
-namespace {
-
 bool mine(const double *x)
 {
   const unsigned patch = 31 * (unsigned) (7.0 * x[0] + 20.0) + 17 * (unsigned) (5.0 * x[1] + 20.0) +
@@ -50,8 +48,6 @@ SolidScene clamped(int dim, int n)
   };
   return scene;
 }
-
-}    // namespace
 
 TEST(SolidSystem, IsThatOfOneRank)
 {

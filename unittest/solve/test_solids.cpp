@@ -28,8 +28,6 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 void clamp(double (*P)[3])
 {
   for (int a = 0; a < 3; a++) P[a][a] = 0.0;
@@ -92,8 +90,6 @@ SolidScene slope(int n)
   };
   return scene;
 }
-
-}    // namespace
 
 // Symmetric and positive definite, with constraints that are not along axes, masses, an odd period,
 // and in 3d.

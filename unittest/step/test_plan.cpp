@@ -18,8 +18,6 @@
 using namespace MPM_TEST;
 using Data = MPMStageData;
 
-namespace {
-
 /** Hashes of the data of all fields. What the owners of stages keep themselves is not looked at. */
 class Hashes {
  public:
@@ -185,8 +183,6 @@ std::vector<Named> scenes()
   list.push_back({"cell", plane("lj", "p p", "0 4 0 4", 1, 0.3) + CELL});
   return list;
 }
-
-}    // namespace
 
 TEST(Stages, WriteWhatTheySay)
 {

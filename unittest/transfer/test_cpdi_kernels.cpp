@@ -13,8 +13,6 @@
 using namespace MPM_NS;
 using namespace MPM_TEST;
 
-namespace {
-
 /** Corners of a cube of half edge size, each moved by up to noise. */
 template <int DIM> void distorted(double size, double noise, double *x)
 {
@@ -501,5 +499,3 @@ bool is_apic(const Case &c)
 INSTANTIATE_TEST_SUITE_P(All, Kernels, all_cases({CPDI, CPDI2}), case_name);
 INSTANTIATE_TEST_SUITE_P(All, ApicKernels, all_cases({CPDI, CPDI2}, is_apic), case_name);
 INSTANTIATE_TEST_SUITE_P(All, FreeCorners, all_cases({CPDI2}), case_name);
-
-}    // namespace

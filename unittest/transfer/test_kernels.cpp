@@ -19,8 +19,6 @@
 using namespace MPM_NS;
 using namespace MPM_TEST;
 
-namespace {
-
 /** Points of which the rows [first,last) lie in the tile of a block; arrays are not padded. */
 struct Points {
   int dim, order, first, last, n;
@@ -818,5 +816,3 @@ TEST(Select, ByEnvironment)
   EXPECT_EQ(MPMKernels::select(), nullptr);
   unsetenv("MPM_ISA");
 }
-
-}    // namespace

@@ -10,8 +10,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 const char *const shapes[] = {"shape quadratic", "shape cubic"};
 
 /** A block of 6 x 6 (x 6) cells with points at random. */
@@ -54,8 +52,6 @@ double field(int dim, const double *x, int i, int along)
   }
   return sum;
 }
-
-}    // namespace
 
 // a field of products of coordinates goes to the nodes and back without a change, at all points, if
 // those are given its modes, whatever the instruction set; apic, which has no such modes, changes

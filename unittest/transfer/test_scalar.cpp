@@ -12,8 +12,6 @@
 using namespace MPM_NS;
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr Shape SHAPES[] = {LINEAR, QUADRATIC, CUBIC, GIMP, BERNSTEIN};
 
 /** Points of a batch anywhere in the range of a tile, and a tile with a number at each node. */
@@ -84,8 +82,6 @@ template <class F> void for_all(const F &f)
         }
   }
 }
-
-}    // namespace
 
 TEST(Scalar, IsThatOfThePlainLoops)
 {

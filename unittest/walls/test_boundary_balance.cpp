@@ -14,8 +14,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** What a wall is expected to work: with the velocity V that all of it has, without or with
  *  friction, or by its torque about an axis along z through a point. */
 enum Work { TRANSLATES, RUBS, TURNS, OTHER };
@@ -105,8 +103,6 @@ const Motion motions[] = {
      TRANSLATES,
      {0.4, 0, -0.2}},
 };
-
-}    // namespace
 
 // Force and torque are the changes of momentum and angular momentum, and work is that of the force
 // along the way of the wall: nothing of this comes from the sums of the fix over nodes. The ledger

@@ -17,7 +17,6 @@ using namespace MPM_TEST;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-namespace {
 constexpr double g = 9.81, E = 1.0e6, NU = 0.3;
 
 std::string elastic_block(double h, const std::string &extent, const std::string &region)
@@ -56,7 +55,6 @@ Rest rest(double h, double thickness, double top, double beyond, const std::stri
             strprintf("variable weight equal -f_w[2]/(%g*mass(all))\nrun 0\n", g) + run_until(0.5));
   return {run.variable("settled"), run.variable("weight")};
 }
-}    // namespace
 
 // A block carries its weight, and settles by rho g H^2/3 (1 - nu^2)/E in the mean when it is wide;
 // the thickness of the plate does not matter. Plates thinner than a spacing held nothing when they
@@ -138,7 +136,6 @@ TEST(ThinPlate, LetsGo)
     }
 }
 
-namespace {
 /** The force on a punch, 0.2 wide, that is pressed by 0.03 into a block of 2 x 0.5 on a smooth
  *  floor: height in node spacings, where its sides are between nodes, and the place of the surface
  *  between nodes. */
@@ -154,7 +151,6 @@ double punch(double h, double height, double side, double surface, const std::st
             "variable force equal f_w[2]\nrun 0\n" + more + run_until(0.3));
   return run.variable("force");
 }
-}    // namespace
 
 // How high the punch is does not matter, and not much where it is between the nodes. Before, these
 // had 19 to -1 % of the force of a high one, which itself had 80 % of it.
@@ -241,7 +237,6 @@ TEST(ThinRegions, AreReportedIn3d)
   }
 }
 
-namespace {
 struct Warned {
   std::string run, ranks = "* 1 1", extent = "0 2 0 1.2", body = "0.2 1.8 0.4 0.7", more;
   int every = 1;
@@ -270,7 +265,6 @@ std::vector<std::string> warnings_of(const std::string &region, const std::strin
   }
   return lines;
 }
-}    // namespace
 
 // Once for all ranks, and with the same place: a blade below the last of two ranks was reported by
 // this one alone, not in the log file, and a plate on two ranks twice
@@ -324,7 +318,6 @@ TEST(ThinRegions, ThatMoveAreReportedInShortRuns)
 
 /* ------------------------------------------------ unions, intersections, cones */
 
-namespace {
 /** The surface of the region "it" at places in and around a box from -2 to 2. */
 void each_place(const std::string &regions,
                 const std::function<void(const MPMRegionSurface &surface, const double *x)> &f)
@@ -369,7 +362,6 @@ double tip(const double *x)
   };
   return std::min(from(-1.0, 0.0, 1.0, 1.0), from(1.0, 1.0, 1.0, 0.0));
 }
-}    // namespace
 
 // Where the nearest surface is that of one part, and it has nothing to do with others, distances
 // are exact
@@ -532,7 +524,6 @@ TEST(Cones, SharpEnds)
     }
 }
 
-namespace {
 /** Forces on a separating wall "wall" in each second step, when a body of 6 x 6 x 4 cells moves up
  *  to it, 0.6 cells in all after it touches what begins at z = 5. */
 std::vector<double> forces_of_impact(const std::string &wall)
@@ -564,7 +555,6 @@ void expect_push(const std::vector<double> &forces, const std::string &name)
   EXPECT_GT(measured(name + ": force at the end", forces.back()), 0.0);
   for (const double f : forces) EXPECT_GE(f, -1.0e-12) << name;
 }
-}    // namespace
 
 // A body moves up to the tip of a cone, and is pressed in
 TEST(Cones, SharpTools)
@@ -602,7 +592,6 @@ TEST(Unions, In3d)
 
 /* ---------------------------------------------------------------------- walls that move */
 
-namespace {
 /** The way of a block, 0.8 x 0.3, along a wall with slip and friction 0.3 in 0.3 s, when gravity is
  *  at 30 degrees to it; the wall moves with this velocity, the block has the velocity of the last
  *  one at first. */
@@ -630,7 +619,6 @@ double way(double h, double top, const double *wall, const double *first)
   run.commands(run_until(settled + 0.3));
   return run.variable("at") - x0 - first[0] * 0.3;
 }
-}    // namespace
 
 // The block starts to slide when the wave of shear has the stress of friction (see
 // test_wall_rolling.cpp); on a belt that is faster than it, friction is along its motion. Where

@@ -18,8 +18,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 struct Incline {
   double theta, mu;
 };
@@ -89,7 +87,6 @@ void expect_rigid(const Incline &incline, const Motion &m, double share, double 
     EXPECT_LT(measured(name + "offset of the force", std::abs(m.offset)), 0.25 * h);
   }
 }
-}    // namespace
 
 class RollingDisk : public ::testing::TestWithParam<double> {};
 
@@ -124,8 +121,6 @@ SERIAL_TEST(RollingSphere, OnAFace)
                roll({30, 0.3}, 0.05, "fix w all mpm/boundary ylo separate friction MU", 3), 0.02,
                0.05, 0.0);
 }
-
-namespace {
 
 /** Points in n/2 rings, n of them along the diameter: squares of the same area around each, as a
  *  mesh. */
@@ -287,7 +282,6 @@ void expect_round(const Incline &incline, const Motion &m, const std::string &wa
   EXPECT_LT(measured(name + "offset of the force", std::abs(offset)), 0.25 * h);
   EXPECT_GE(measured(name + "sinks by", m.lowest), -0.15 * h);
 }
-}    // namespace
 
 // Planes that are regions, at any angle and place in a cell, are as good as faces.
 SERIAL_TEST(RoundDisk, OnRegions)
@@ -329,8 +323,6 @@ SERIAL_TEST(RollingSphere, OnATurnedPlane)
                                      -std::sin(turn), -std::cos(turn));
   expect_rigid({60, 0.6}, roll({60, 0.6}, 0.05, wall, 3, 30.0), 0.02, 0.05, 0.25 * 0.05);
 }
-
-namespace {
 
 /** The way along the wall in this time from rest, of a body that has settled, damped, without
  *  friction. begin: field, body, and material. */
@@ -446,7 +438,6 @@ void expect_ball(const Incline &incline, double h, const Wall &wall)
                        way / (0.5 * a * time * time)),
               1.0, 0.02);
 }
-}    // namespace
 
 SERIAL_TEST(SlidingBlock, OnRegions)
 {

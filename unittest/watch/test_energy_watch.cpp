@@ -18,8 +18,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A block that moves through a periodic box, and gets a part of its kinetic energy out of
  *  nothing. */
 std::string drift(const char *gain)
@@ -427,5 +425,3 @@ PARAMETER_TEST(EnergyWatchLoads, WorkIsThatOfTheLedger, LoadOnABar, ValuesIn(loa
     EXPECT_GT(e[0] + e[1], 0.3 * in_play);    // work was done
   }
 }
-
-}    // namespace

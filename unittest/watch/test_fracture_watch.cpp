@@ -13,8 +13,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr const char *SOFT = "neohookean 1e-4 0.3";
 
 struct Told {
@@ -91,5 +89,3 @@ TEST(FractureWatch, IsSilentWhereNothingBreaks)
     EXPECT_EQ(told_by(2.5, "", material).warnings, 0) << material;
   EXPECT_EQ(told_by(0.35, "", SOFT, -0.1).warnings, 0);    // pressed together
 }
-
-}    // namespace
