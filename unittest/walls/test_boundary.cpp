@@ -1753,7 +1753,7 @@ timestep 0.001
        {"fix w all mpm/boundary top slip", "must be region or one or more of"},
        {"fix w all mpm/boundary ylo ylo slip", "twice"},
        {"fix w all mpm/boundary ylo glue", "must be one of stick slip separate"},
-       {"fix w all mpm/boundary xlo slip", "periodic"},
+       {"fix w all mpm/boundary xlo slip", "belongs to a periodic axis: use boundary f"},
        {"fix w all mpm/boundary zlo slip", "2d"},
        {"fix w all mpm/boundary ylo slip friction -0.1", "must not be negative"},
        {"fix w all mpm/boundary ylo slip friction nan", ""},
