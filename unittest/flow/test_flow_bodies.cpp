@@ -101,8 +101,7 @@ SERIAL_TEST(Body, GoesOn)
   }
 }
 
-// Archimedes: it goes down as far as its weight is that of the water, with 1.5 and 3 cells in its
-// depth, and nothing moves it then
+// Archimedes: its weight is that of the water, with 1.5 and 3 cells in its depth
 SERIAL_TEST(Boat, Floats)
 {
   for (const double h : {0.04, 0.02}) {
@@ -122,8 +121,7 @@ SERIAL_TEST(Boat, Floats)
   }
 }
 
-// A torque heels it until the water rights it as far: m g (GM + tan^2/2 BM) sin of a box, with GM =
-// BM + KB - KG
+// A torque heels it: m g (GM + tan^2/2 BM) sin of a box, with GM = BM + KB - KG
 SERIAL_TEST(Boat, Heels)
 {
   constexpr double angle = 0.1, B = 0.4, depth = 0.1, BM = B * B / (12.0 * depth);

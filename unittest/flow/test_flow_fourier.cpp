@@ -4,8 +4,7 @@
 // labels: physics mpi input
 // mpi: 1 3
 
-// Fix mpm/incompressible solver fourier: iterations in boxes and in other shapes, flows against
-// those with multigrid.
+// Fix mpm/incompressible solver fourier: iterations, and flows against those with multigrid.
 
 #include "mpm_lammps.h"
 
@@ -76,8 +75,7 @@ TEST(Fourier, OneIterationInFullBoxes)
         << faces;
 }
 
-// the surface is at the edge of the box around the water, up to the part of a cell that its
-// distance differs from one half
+// the surface is at the edge of the box around the water, up to a part of a cell
 TEST(Fourier, FewIterationsInFlatLayers)
 {
   for (const int n : {32, 64})
@@ -110,8 +108,7 @@ TEST(Fourier, IterationsInOtherShapes)
   }
 }
 
-// flows do not depend on the solver: pools and a drop, a solid region, two liquids, gas, a
-// viscosity
+// flows do not depend on the solver: pools, a drop, a solid region, two liquids, gas, viscosity
 TEST(Fourier, SameFlowAsWithMultigrid)
 {
   const struct {
@@ -142,8 +139,7 @@ TEST(Fourier, SameFlowAsWithMultigrid)
   }
 }
 
-// with parts of the box that move from rank to rank, the iterations are the same, and the flow is
-// to the tolerance
+// parts of the box move from rank to rank: the same iterations, and the flow to the tolerance
 TEST(Fourier, SameOnRanks)
 {
   for (const int dim : {2, 3}) {
@@ -160,8 +156,7 @@ TEST(Fourier, SameOnRanks)
 // closed pools, whose pressures are determined up to constants; a single cell; no water at all
 TEST(Fourier, SmallestFlows)
 {
-  // a wall of no thickness cannot be made of points: two pools at the two ends of a full box with a
-  // solid block
+  // points make no wall without thickness: two pools at the ends of a full box with a solid block
   const std::string block = "region block block 0.4 0.6 INF INF INF INF\n";
   const int many = iterations(water(2, "f f", 20, "0 1 0 1", "(x<0.4||x>0.6)") + block +
                               flow(20, SOLVER + " region block"));

@@ -4,8 +4,7 @@
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Gas in pockets of fix mpm/incompressible: water on springs of gas, bubbles, water that rests on
-// it, pockets that split and join.
+// Gas in pockets of fix mpm/incompressible: springs of gas, bubbles, pockets that split and join.
 
 #include "mpm_lammps.h"
 
@@ -44,8 +43,7 @@ std::string slug(int dim, int n, double offset, const std::string &units = "lj")
       strprintf("create_points 1 region w spacing %.17g outside ignore\n", 0.5 * h);
 }
 
-/** Water between the radii 1 and 2, with gas inside and open air outside, which is blown up at
- *  first. */
+/** Water between the radii 1 and 2, gas inside and open air outside, blown up at first. */
 std::string shell(int dim, int n)
 {
   const double h = 1.0 / n;
@@ -92,8 +90,7 @@ std::string splash(const std::string &gas_of)
       gas_of + "\nfix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.4 max 0.01\n";
 }
 
-// omega^2 = gamma p A (1/l + 1/l) / m, of second order in time, and without a loss of energy but
-// for 0.07 omega dt per period
+// omega^2 = gamma p A (1/l + 1/l) / m, of second order; energy lost: 0.07 omega dt per period
 SERIAL_TEST(Slug, Swings)
 {
   const double exact = std::sqrt(1.4 * 10.0 * (2.0 / 0.3) / 0.4);
@@ -135,8 +132,7 @@ SERIAL_TEST(Slug, LongSteps)
   EXPECT_NEAR(gas(run, HIGHEST), 1000.0, 10.0);
 }
 
-// pressures on walls, of gas and of water that it pushes, and energies in all units; gas of
-// constant temperature
+// pressures of gas and of water that it pushes, energies in all units; constant temperature
 SERIAL_TEST(Slug, Units)
 {
   for (const char *units : {"si", "metal", "real", "lj"})
@@ -248,8 +244,7 @@ SERIAL_TEST(Tube, AtRest)
   EXPECT_LT(error[1], 0.7 * error[0]);
 }
 
-// at rest: the head between the levels in and around a bell, and its lift, that of gas and walls in
-// the water
+// at rest: the head between the levels in and around a bell, and its lift, of gas and walls
 SERIAL_TEST(Bell, Lift)
 {
   Scene run(
@@ -316,8 +311,7 @@ SERIAL_TEST(Splash, KeepsGas)
   EXPECT_NEAR(gas(run, HIGHEST), 1e5, 5e3);
 }
 
-// a lid of water falls on two columns: the air between them was open, and has the pressure outside
-// when it is closed in
+// a lid of water falls on two columns: open air between them has the pressure outside
 SERIAL_TEST(Pocket, TakesAirFromOutside)
 {
   Scene run(plane("lj", "f f", "0 1 0 1.2", 1, 0.02) +

@@ -4,8 +4,7 @@
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Grains of fix mpm/immersed in a flow of fix mpm/incompressible: drag, buoyancy, suspensions,
-// beds.
+// Grains of fix mpm/immersed in fix mpm/incompressible: drag, buoyancy, suspensions, beds.
 
 #include "mpm_lammps.h"
 
@@ -33,8 +32,7 @@ std::string flow(const std::string &options, const std::string &laws)
       "\nfix drag grains mpm/immersed w 1.0 " + laws + "\n";
 }
 
-/** Drag on a single sphere (Schiller and Naumann) of the diameter d with the velocity v in a fluid
- *  of density 1. */
+/** Drag on a sphere (Schiller and Naumann) of diameter d and velocity v in a fluid of density 1. */
 double schiller(double d, double v, double mu)
 {
   return 3.0 * PI * mu * d * v * (1.0 + 0.15 * std::pow(v * d / mu, 0.687));
@@ -133,9 +131,8 @@ SERIAL_TEST(Grain, SinksWithTheTerminalVelocity)
   }
 }
 
-// A closed column of fluid: discs settle with the terminal velocity times eps^4.65 in slow flow
-// (Richardson and Zaki; the exponent is that of Wen and Yu), as the flux of fluid and grains
-// together is zero
+// In a closed column discs settle with the terminal velocity times eps^4.65 in slow flow
+// (Richardson and Zaki; the exponent is that of Wen and Yu)
 SERIAL_TEST(Suspension, IsHindered)
 {
   const double d = 0.05, mu = 0.1, g = 1.0;
@@ -157,8 +154,7 @@ SERIAL_TEST(Suspension, IsHindered)
   }
 }
 
-// A bed that fills half of a periodic column, driven by a force on the fluid: Ergun's law for the
-// flux, in steps of any length
+// A bed in half of a periodic column, driven by a force on the fluid: Ergun's law for the flux
 SERIAL_TEST(Bed, HasThePressureDropOfErgun)
 {
   const double d = 0.25, pull = 0.5, solid = 12.25 * 0.25 * PI * d * d;
@@ -268,8 +264,7 @@ SERIAL_TEST(Grain, KeepsMomentum)
 }
 
 /** A wave between a suspension, 5 % of discs, and the water above or below it in a closed tank with
- *  n cells: frequency over that of liquids, of which one has the density rho + (rho_s - rho)
- *  phi. */
+ *  n cells: frequency over that of liquids, one of density rho + (rho_s - rho) phi. */
 double wave_of_suspension(int n, double density, const std::string &options)
 {
   const bool heavy = density > 1.0;
@@ -305,8 +300,7 @@ double wave_of_suspension(int n, double density, const std::string &options)
       0.5 * PI / time / w);
 }
 
-// grains weigh what they do in the fluid that they displace: of first order, as the interface is as
-// thick as the mapping of grains
+// grains weigh what they do in the fluid: of first order, by the thickness of the mapping of grains
 SERIAL_TEST(Suspension, WeighsWhatItDoes)
 {
   EXPECT_GT(wave_of_suspension(16, 3.0, ""), 1.1);    // the miss that the manual tells of
@@ -317,8 +311,7 @@ SERIAL_TEST(Suspension, WeighsWhatItDoes)
   EXPECT_NEAR(wave_of_suspension(16, 0.2, "displace yes"), 1.0, 0.08);
 }
 
-// Grains that the flow carries do not make it viscous: a shear wave with many light, stiff ones in
-// it decays as one without
+// Grains that the flow carries, light and stiff ones, do not make it viscous: a shear wave decays
 SERIAL_TEST(Suspension, IsNotViscousByItself)
 {
   double left[2];
@@ -491,8 +484,7 @@ SERIAL_TEST(Grain, BadInput)
                 .size(),
             0u);
 
-  // a weight of each group of grains is the same as one of all; one that varies is none before the
-  // first forces
+  // weights of groups of grains are one of all; one that varies is none before the first forces
   const std::string fits = scene + w + d + "1.0 0.1 gravity 0 -1 0",
                     left = "region left block INF 2 INF INF INF INF\n"
                            "group left region left\ngroup right subtract all left\n";

@@ -4,8 +4,7 @@
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Points of fix mpm/emit that come into a flow of fix mpm/incompressible, and those that fix
-// mpm/absorb takes away.
+// Points that fix mpm/emit adds to a flow of fix mpm/incompressible, or fix mpm/absorb takes away.
 
 #include "mpm_lammps.h"
 
@@ -80,8 +79,7 @@ SERIAL_TEST(Channel, IsSteady)
       }
 }
 
-// A mouth that covers 5.5 of 8 cells: behind it, the mean velocity is less by as much from the
-// first steps on
+// A mouth that covers 5.5 of 8 cells: behind it, the mean velocity is less by as much at once
 SERIAL_TEST(Channel, IsWiderThanItsMouth)
 {
   Scene run(
@@ -101,8 +99,7 @@ SERIAL_TEST(Channel, IsWiderThanItsMouth)
   EXPECT_LT(measured("divergence", run.fix("w")->compute_vector(DIVERGENCE)), 1e-6);
 }
 
-// A channel between regions that cut cells in the middle: as much flows as comes, and not what is
-// left of it in cut cells
+// A channel between regions that cut cells in the middle: as much flows as comes
 SERIAL_TEST(Channel, BetweenRegions)
 {
   Scene run(
@@ -121,8 +118,7 @@ SERIAL_TEST(Channel, BetweenRegions)
   EXPECT_NEAR(measured("mean velocity / inflow", sum / n / 0.37), 1.0, 0.005);
 }
 
-// With friction at its walls, the flow in the channel becomes that of Poiseuille, of the rate that
-// comes
+// With friction at its walls, the flow in the channel becomes Poiseuille's, of the rate that comes
 SERIAL_TEST(Channel, BecomesPoiseuille)
 {
   for (const char *viscosity : {"400.0", "1e6 implicit yes"}) {

@@ -4,9 +4,8 @@
 // labels: physics mpi restart input
 // mpi: 1 3 4
 
-// Liquids of several densities and viscosities in fix mpm/incompressible: layers at rest, waves
-// between them, layers that turn over, and shear of layers; with bodies that float between them,
-// and with inflow.
+// Liquids of several densities and viscosities in fix mpm/incompressible: layers at rest, that turn
+// over, and that are sheared; waves; bodies between them; inflow.
 
 #include "mpm_lammps.h"
 
@@ -18,8 +17,7 @@ using namespace MPM_TEST;
 
 enum { ITERATIONS = 0, FILLED = 3, KINETIC = 5, FASTEST = 6, YLO = 9, STRESS = 13 };
 
-/** A closed square of two layers, whose interface has the shape a cos(pi x); the lower one has the
- *  density below. */
+/** A closed square of two layers with the interface a cos(pi x), the lower one of density below. */
 std::string layers(int n, double below, double above, double a)
 {
   const double s = 2.0 * std::sinh(PI / 2);
@@ -94,8 +92,7 @@ struct Layers {
                       1.0 / n, rho[0], mu[0], rho[1], mu[1], upper, upper);
     return text + wall + " " + options + "\n";
   }
-  /** Velocity of the steady flow at y with this shear stress at the lower plate and weight along
-   *  the plates. */
+  /** Velocity of the steady flow at y with this stress at the lower plate and weight along them. */
   double steady(double y, double stress, double g) const
   {
     const double low = std::min(y, interface()), more = y - low, above = stress - rho[0] * g * low;
@@ -263,8 +260,7 @@ SERIAL_TEST(Liquids, TurnOver)
   EXPECT_NEAR(measured("rate over theory", std::acosh(amplitude(run) / before) / 2.0), 1.0, 0.05);
 }
 
-// a column of water collapses under a fluid that is a thousand times lighter: its energy never
-// grows
+// a column of water collapses under a fluid a thousand times lighter: its energy never grows
 SERIAL_TEST(Liquids, LightAndHeavy)
 {
   Scene run(column("liquid air 1", 0.4, 0.01));
@@ -275,9 +271,8 @@ SERIAL_TEST(Liquids, LightAndHeavy)
   EXPECT_LT(measured("speed", run.fix("w")->compute_vector(FASTEST)), 20.0);
 }
 
-// The shear stress is the same in both layers, so that the velocity is right wherever their
-// interface is in a cell, along both axes; at the middle of cells, where points interpolate, it has
-// a kink
+// One shear stress in both layers: the velocity is right wherever their interface is in a cell,
+// along both axes; at the middle of cells, where points interpolate, it has a kink
 SERIAL_TEST(Shear, Couette)
 {
   constexpr double speed = 1e-9;

@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// The step of an incompressible flow without a fix: what its stages read and write, and points
-// against those of the fix.
+// The step of an incompressible flow without a fix: what stages read and write; points of the fix.
 
 #include "mpm_lammps.h"
 

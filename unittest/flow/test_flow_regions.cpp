@@ -66,8 +66,7 @@ std::string canal(int n, double angle)
       "fix g all gravity 9.81 vector 0 -1 0\n";
 }
 
-// water at rest over a floor that is no plane of nodes stays at rest, and carries what it should;
-// Archimedes
+// water over a floor that is no plane of nodes stays at rest, with its pressure; Archimedes
 SERIAL_TEST(Regions, AtRest)
 {
   for (const int dim : {2, 3}) {
@@ -90,8 +89,7 @@ SERIAL_TEST(Regions, AtRest)
   }
 }
 
-// what is in the way of a cylinder or sphere that begins to move: potential flow in the gap, and
-// its added mass
+// a cylinder or sphere that begins to move: potential flow in the gap, and its added mass
 SERIAL_TEST(Regions, PotentialFlow)
 {
   constexpr double a = 0.2, b = 0.47, U = 0.1, dt = 1e-6;

@@ -4,8 +4,7 @@
 // labels: unit mpi ranks
 // mpi: 1 4
 
-// Equations of cells by lists of them: against vectors that are known, and against multigrid on the
-// lattice.
+// Equations of cells by lists: against known vectors, and against multigrid on the lattice.
 
 #include "mpm_lammps.h"
 
@@ -138,8 +137,7 @@ TEST(Rows, SpreadSolvesTheEquations)
       }
 }
 
-// one cycle and one product, on the finest level by lists and on the lattice; the box is closed,
-// too
+// a cycle and a product, on the finest level by lists and on the lattice; the box is closed, too
 TEST(Rows, PoissonIsThatOfTheLattice)
 {
   for (const int dim : {2, 3})

@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 240
 
-// Elastic solids in fix mpm/incompressible: waves of shear, a layer under a flow, disks that are
-// carried along and that sink.
+// Elastic solids in fix mpm/incompressible: waves of shear, a layer under a flow, disks.
 
 #include "mpm_lammps.h"
 
@@ -54,8 +53,7 @@ struct Layer {
   }
 };
 
-/** Root mean square error of the velocities of points in the second period, over that of what they
- *  should be. */
+/** Root mean square error of velocities in the second period, over that of what they should be. */
 double error_of_layer(int n, const Layer &layer)
 {
   const double h = 1.0 / n, T = 2.0 * PI / layer.w,
@@ -193,8 +191,7 @@ SERIAL_TEST(FlowSolids, WavesOfShear)
   }
 }
 
-// a layer that is sheared by the fluid above it: of second order, wherever the interface is in a
-// cell
+// a layer sheared by the fluid above it: of second order, wherever the interface is in a cell
 SERIAL_TEST(FlowSolids, LayerUnderAFlow)
 {
   for (const double density : {1.0, 2.0})

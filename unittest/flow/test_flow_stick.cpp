@@ -81,8 +81,7 @@ std::string fixes(double h)
       "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5 max 0.02\n";
 }
 
-// plates with a slope of 1:2 in a periodic box: drag of walls that are oblique to the lattice, with
-// 8 and 16 cells between them
+// plates with a slope of 1:2 in a periodic box: drag of oblique walls, 8 and 16 cells between them
 SERIAL_TEST(Stick, InclinedPlates)
 {
   const double a = 0.193,
@@ -120,8 +119,7 @@ SERIAL_TEST(Stick, InclinedPlates)
   }
 }
 
-// a gap of 8 cells at 45 degrees, at four places in a cell: the drag is that of the place, and not
-// of stairs
+// a gap of 8 cells at 45 degrees, at four places in a cell: the drag is not that of stairs
 SERIAL_TEST(Stick, PlatesAtFortyFiveDegrees)
 {
   constexpr double gap = 8.0, period = 16.0 * 0.70710678118654752;    // in cells
@@ -178,8 +176,7 @@ SERIAL_TEST(Stick, Pipe)
   }
 }
 
-// between balls, the inner of which turns: cells behind small openings do not take thousands of
-// iterations
+// between balls, one of which turns: cells behind small openings do not take many iterations
 SERIAL_TEST(Stick, IterationsBetweenBalls)
 {
   Scene run(
@@ -275,8 +272,7 @@ SERIAL_TEST(Stick, BallThatTurns)
       square += u * u;
     }
   }
-  // without strain equations are exact; what is left is of points next to the wall, half of all
-  // with 4.5 cells in the radius
+  // without strain equations are exact; what is left is of points at the wall, here half of all
   EXPECT_LT(measured("error", std::sqrt(sum / square)), 0.05);
 }
 

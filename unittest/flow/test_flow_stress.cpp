@@ -4,8 +4,7 @@
 // labels: physics mpi restart input
 // mpi: 1 3 4
 
-// Implicit viscosity of fix mpm/incompressible: flows of honey, with steps far beyond the explicit
-// limit.
+// Implicit viscosity of fix mpm/incompressible: honey, in steps far beyond the explicit limit.
 
 #include "mpm_lammps.h"
 
@@ -19,8 +18,7 @@ double explicit_dt(double h, double nu, int dim)
   return h * h / (2.0 * dim * nu);
 }
 
-/** Slow vortices of Taylor and Green on n x n cells: what is left of their amplitude at t, over
- *  exp(-2 nu k^2 t). */
+/** Slow vortices of Taylor and Green on n x n cells: amplitude at t, over exp(-2 nu k^2 t). */
 double vortices_left(int n, double t, int steps)
 {
   Scene run(
@@ -33,8 +31,7 @@ double vortices_left(int n, double t, int steps)
   return std::sqrt(4e12 * run.fix("w")->compute_vector(KINETIC)) / std::exp(-8.0 * PI * PI * t);
 }
 
-/** A sheet of length 4 and thickness 0.4 across its middle, that is stretched: u = U sin(pi
- *  x/4). */
+/** A sheet of length 4, 0.4 thick across its middle, is stretched: u = U sin(pi x/4). */
 std::string sheet(double h, double offset, double nu)
 {
   return plane("si", "p p", "-2.6 2.6 -0.6 0.6", 1, 0.02) +
@@ -95,8 +92,7 @@ SERIAL_TEST(Plates, CouetteAndPoiseuille)
   }
 }
 
-// a hundred times the explicit limit: a factor of 0.67 in a step. Backward Euler has 1/(1 + 2 nu
-// k^2 dt), and is of first order
+// a hundred times the explicit limit, 0.67 in a step; backward Euler: 1/(1 + 2 nu k^2 dt)
 SERIAL_TEST(Vortices, DecayWithLongSteps)
 {
   const int n = 64;
@@ -119,8 +115,7 @@ SERIAL_TEST(Vortices, DecayWithLongSteps)
 SERIAL_TEST(Sheet, Trouton)
 {
   constexpr double t = 0.2, rate = 4.0 * (PI / 4) * (PI / 4);
-  // of the rate of decay; with so many steps, cells across half of the sheet, and its middle so far
-  // from a face
+  // of the rate of decay; steps, cells across half of the sheet, distance of its middle from a face
   const auto error = [&](int steps, int n, double offset) {
     const double h = 0.2 / n;
     Scene run(sheet(h, offset * h, 1.0) + strprintf("timestep %.17g\nrun %d\n", t / steps, steps));
@@ -180,8 +175,7 @@ SERIAL_TEST(Tank, AtRest)
   }
 }
 
-// what turns as a rigid body does so without stress: with honey it turns as without viscosity, and
-// momentum stays
+// rigid rotation is without stress: honey turns as without viscosity, and momentum stays
 SERIAL_TEST(Blob, TurnsRigidly)
 {
   for (const int dim : {2, 3}) {

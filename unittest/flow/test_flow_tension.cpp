@@ -114,8 +114,7 @@ SERIAL_TEST(Drop, Swings)
   EXPECT_LT(measured("spin", std::fabs(spin / inertia)), 1e-3);
 }
 
-// O5: a capillary wave of half its length between two walls, which it meets at a right angle, as
-// deep as it is long
+// O5: half a capillary wave between walls that it meets at a right angle, as deep as long
 SERIAL_TEST(Wave, BetweenWalls)
 {
   const int n = 40;    // cells in a wave
@@ -166,8 +165,7 @@ SERIAL_TEST(Units, Pressure)
   }
 }
 
-// a drop that swings across faces of the box, on four ranks, balanced; and the same to the last bit
-// from a restart file
+// a drop that swings across faces of the box, on four ranks, balanced, and from a restart file
 TEST(Drop, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {

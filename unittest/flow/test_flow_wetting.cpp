@@ -4,8 +4,7 @@
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Contact angles of fix mpm/incompressible: drops on floors without gravity, menisci between
-// plates.
+// Contact angles of fix mpm/incompressible: drops on floors, menisci between plates.
 
 #include "mpm_lammps.h"
 
@@ -105,8 +104,7 @@ std::vector<double> meniscus(double W, double angle, int places)
   return y;
 }
 
-// drops come to rest as segments of disks that meet the floor at the angle, and with the pressure
-// of their radius
+// drops come to rest as segments of disks with the angle, and the pressure of their radius
 SERIAL_TEST(Sessile, OnWallOfTheBox)
 {
   for (const double angle : {60.0, 90.0, 120.0}) {

@@ -308,10 +308,9 @@ SERIAL_TEST(Plates, CouetteAndPoiseuille)
   EXPECT_NEAR(measured("Poiseuille", at_half(poiseuille)), 0.615353, 0.004 * 0.615353);
 }
 
-// a film on an inclined floor with explicit viscosity: the layer of points at its surface, whose
-// outer faces viscosity does not act on, flows with the water below it and does not fall freely,
-// wherever the surface is in a cell (but exactly in its middle, where rounding decides which cells
-// are wet)
+// a film on an incline, explicit viscosity: the layer of points at its surface, whose outer faces
+// viscosity does not act on, flows with the water below it and does not fall freely, wherever the
+// surface is in a cell (but exactly in its middle, where rounding decides which cells are wet)
 SERIAL_TEST(Film, SurfaceAnywhere)
 {
   for (const int dim : first_of(1, {2, 3}))
@@ -363,11 +362,10 @@ SERIAL_TEST(Film, SurfaceOfSteps)
   }
 }
 
-/** Mean velocity of points in a square duct of the width 1 with n x n cells, 2 x 2 points in each,
- *  after so many steps from rest under the force 1 with the viscosity 1: velocities in the middle
- *  of cells obey the difference equation of second order in space and first order in time, with
- *  walls half a cell away from the first ones, and modes are sines. Points have their linear
- *  interpolation. */
+/** Mean velocity of points in a square duct of width 1 with n x n cells, 2 x 2 points in each,
+ *  after steps from rest under the force 1 with the viscosity 1: velocities in the middle of cells
+ *  obey the difference equation of second order in space and first order in time, with walls half a
+ *  cell away from the first ones, and modes are sines. Points have their linear interpolation. */
 double duct_of_differences(int n, double dt, int nsteps)
 {
   double sum = 0.0, factor[2], rate[2];
@@ -415,9 +413,8 @@ SERIAL_TEST(Duct, IsThatOfDifferences)
   }
 }
 
-// O2: the cavity at Re = 100 with 64 x 64 cells, of which 0.008 is asked from t = 30 on; at 12 it
-// is steady but for 0.001. Steps are nearly as long as explicit viscosity is stable, which is twice
-// what fix mpm/dt has
+// O2: the cavity at Re = 100 with 64 x 64 cells: 0.008 is asked from t = 30 on; at 12 it is steady
+// but for 0.001. Steps are near the limit of explicit viscosity, twice that of fix mpm/dt
 SERIAL_TEST(Cavity, Profile)
 {
   LONG_CASE();
@@ -435,8 +432,7 @@ SERIAL_TEST(Cavity, Profile)
 }
 
 // O2 at Re = 400 with 32 cells, in long steps: sharp paths and reflect are as good as central
-// differences of second order on the same lattice, whose error is 0.034 (with 64 cells 0.0092, and
-// 0.0101 with sharp paths)
+// differences on the same lattice, error 0.034 (with 64 cells 0.0092, and 0.0101 with sharp paths)
 SERIAL_TEST(Cavity, SharpPaths)
 {
   const int n = 32;
@@ -553,8 +549,7 @@ SERIAL_TEST(Tank, PoolsAndFullOnes)
   EXPECT_NEAR(up / 9810, 1.0, 1e-8);
 }
 
-// O7: iterations to 1e-8, with surfaces that are inclined, and with drops; on ranks, and with a
-// closed pool
+// O7: iterations to 1e-8, with inclined surfaces, and with drops; on ranks; with a closed pool
 SERIAL_TEST(Solver, Iterations)
 {
   const int most[2][3] = {{21, 27, 33}, {42, 58, 80}};    // asked: 1.5 times those of a transform
@@ -635,8 +630,7 @@ SERIAL_TEST(Block, FirstPressure)
   EXPECT_GE(measured("order", mean_order / orders), 1.8);
 }
 
-// O5: a standing wave with viscosity. Asked is a frequency to 1 %, which points as dots have, too,
-// with 0.8 %
+// O5: a standing wave with viscosity: the frequency to 1 %, also of points as dots, with 0.8 %
 SERIAL_TEST(Wave, FrequencyAndDecay)
 {
   std::vector<double> t, m;
@@ -647,8 +641,7 @@ SERIAL_TEST(Wave, FrequencyAndDecay)
   EXPECT_NEAR(measured("decay over theory", decay / 0.1797877), 1.0, 0.05);
 }
 
-// without viscosity a wave neither grows nor decays, whatever is reflected: the numerical
-// viscosity, by 2 nu k^2
+// without viscosity a wave neither grows nor decays: the numerical viscosity, by 2 nu k^2
 SERIAL_TEST(Wave, KeepsItsHeight)
 {
   for (const char *options : {"", "reflect 0.8", "transfer flip 0.95"}) {
@@ -662,8 +655,7 @@ SERIAL_TEST(Wave, KeepsItsHeight)
   }
 }
 
-// nothing acts on a drop in flight, whose spin stays; momentum is kept to what the pressure at
-// faces in the surface is off by
+// a drop in flight keeps its spin; momentum is off by the pressure at faces in the surface
 SERIAL_TEST(Drop, InFlight)
 {
   for (const int dim : {2, 3})
@@ -700,8 +692,7 @@ SERIAL_TEST(Drop, InFlight)
     }
 }
 
-// two points that fly and spin by more than two in a step: what they tell faces far from them must
-// not end the run, nor push them
+// two points that fly and spin by more than two in a step must not end the run, nor be pushed
 SERIAL_TEST(Drop, TwoPointsSpin)
 {
   for (const char *options : {"", "reflect 0.5", "spread 0"})
@@ -724,8 +715,7 @@ SERIAL_TEST(Drop, TwoPointsSpin)
     }
 }
 
-// what spreading adds to the energy of points, by a run without it: in the first step nothing else
-// differs
+// what spreading adds to energy, by a run without it: in the first step nothing else differs
 SERIAL_TEST(Spread, IsInTheEnergy)
 {
   for (const char *units : {"si", "metal"})
@@ -863,8 +853,7 @@ SERIAL_TEST(Incompressible, BadInput)
               warnings);
 }
 
-// what hits a floor flat is several times faster after that step, which fix mpm/dt cannot know
-// before
+// what hits a floor flat is much faster after that step, which fix mpm/dt cannot know before
 SERIAL_TEST(Impact, TellsFraction)
 {
   const auto scene = plane("si", "f f", "0 3 0 1.5", 1, 0.02) +
@@ -876,8 +865,7 @@ SERIAL_TEST(Impact, TellsFraction)
   EXPECT_GT(run.fix("w")->compute_vector(FASTEST), 1.5);
 }
 
-// the velocity of what falls is that of the elapsed time, however long its steps were: of fix
-// mpm/dt, and of runs with others
+// the velocity of a fall is that of the elapsed time, with steps of fix mpm/dt or of any length
 SERIAL_TEST(Drop, FallsFreely)
 {
   for (const char *more : {"", "reflect 0.8"}) {
@@ -914,9 +902,8 @@ SERIAL_TEST(Tank, TimeStepThatChanges)
   }
 }
 
-// before the first step there are no forces: the first step of a fluid at rest is that of its
-// weight, and runs that go on from restart files, also those that are written on the way, have the
-// steps of the one without a break
+// the first step of a fluid at rest is that of its weight, as there are no forces before it; runs
+// from restart files, also those that are written on the way, have the steps of one run
 TEST(Tank, FirstTimeStep)
 {
   for (const char *units : {"si", "metal"}) {
@@ -951,8 +938,7 @@ TEST(Tank, FirstTimeStep)
 }
 
 // a column that collapses, hits a wall, and splashes: pressures of all points are those of water,
-// also next to cells that are wet as they are surrounded by others, and that points fill by less
-// than one half
+// also next to cells that are wet as others surround them, less than half full
 SERIAL_TEST(Splash, PressuresOfPoints)
 {
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.03) +

@@ -620,8 +620,7 @@ TEST(GursonLaw, NoVoids)
   }
 }
 
-// what voids it had are closed by 20 to 200 times the yield stress, in one step or many; the rest
-// is a von Mises solid
+// what voids it had are closed by 20 to 200 times the yield stress, in one step or many
 TEST(GursonLaw, ShearOfClosedVoids)
 {
   const double G3 = 3 * 2e11 / 2.6;

@@ -622,8 +622,7 @@ TEST(Anisotropic, WavesAlongTheAxes)
 }
 
 // woven yarns, however taut, slack, or sheared, and with any angle between them: stress is the
-// slope of the energy, and no wave is faster than the bound, which is close when yarns are just
-// taut
+// slope of the energy, and no wave is faster than the bound, close when yarns are just taut
 TEST(Anisotropic, Woven)
 {
   for (const char *more : {"", " angle 50", " angle 110 locking 20 4e7"}) {

@@ -37,8 +37,7 @@ TEST(Shock, SymmetricImpactStates)
   }
 }
 
-// slow compression: the isentrope of an independent integration, below the Hugoniot, and second
-// order
+// slow compression: the isentrope, integrated independently, below the Hugoniot; second order
 TEST(Shock, Isentrope)
 {
   const double rho = 8930, c0 = 3940, s = 1.489, g = 1.99, K = rho * c0 * c0;
@@ -287,8 +286,7 @@ TEST(JWL, IsentropeOfTheProducts)
 }
 
 // a point that burns while the front squeezes it lands on the Hugoniot of the products, which the
-// Rayleigh line of the detonation velocity touches in the Chapman-Jouguet state; values of the
-// explosives in potentials/
+// Rayleigh line touches in the Chapman-Jouguet state; explosives in potentials/
 TEST(JWL, ChapmanJouguetState)
 {
   struct {

@@ -158,8 +158,7 @@ TEST(SoilLaws, LargeSteps)
   }
 }
 
-// batches that stay elastic as a whole go a short way: the same result as beside a point that
-// yields
+// batches that stay elastic go a short way: the same result as beside a point that yields
 TEST(SoilLaws, ElasticBatches)
 {
   for (const char *text : all) {
@@ -268,8 +267,7 @@ TEST(DruckerPrager, SeparatedSandDoesNotGainVolume)
   EXPECT_NEAR(p.work[PLASTIC], 0.0, 1e-7 * K);
 }
 
-// tension: to the apex c cot(phi) of the cone, or to the cutoff; opening dissipates, closing does
-// not
+// tension: to the apex c cot(phi) of the cone, or the cutoff; opening dissipates, closing does not
 TEST(DruckerPrager, Tension)
 {
   const double c = 2e4, phi = 35 * DEG;

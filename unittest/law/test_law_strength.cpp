@@ -2,8 +2,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU
 // General Public License, version 2; see the file LICENSE.
 
-// Strengths and thermal parts, point by point, against closed forms and ordinary differential
-// equations that are solved here.
+// Strengths and thermal parts, point by point, against closed forms and equations solved here.
 
 #include "material/material_testing.h"
 
@@ -273,8 +272,7 @@ TEST(J2Kinematic, ReturnEndsOnTheYieldSurface)
 
 /* ---------------------------------------------------------------------- j2: rate */
 
-/** Overstress over the strain rate: Y (r/rate)^n of Cowper and Symonds, or S (r/rate)^n of
- *  Perzyna. */
+/** Overstress over strain rate: Y (r/rate)^n (Cowper and Symonds), or S (r/rate)^n (Perzyna). */
 struct Rate {
   const char *text;
   double rate, n, S;    ///< S: 0 for Y
@@ -547,8 +545,7 @@ TEST(SteinbergLaw, ModulusAndFlowStress)
   EXPECT_GT(137e9 * (1 / 0.12 - 1), 1e12);    // TPa are reached
 }
 
-// the flow stress begins where strain before the start has left it, and TREF is where G0 and Y0 are
-// meant
+// the flow stress begins where earlier strain has left it, and TREF is where G0 and Y0 are meant
 TEST(SteinbergLaw, PrestrainAndReferenceTemperature)
 {
   Point p("density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 0 3.77e-4 "

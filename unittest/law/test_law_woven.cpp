@@ -2,8 +2,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU
 // General Public License, version 2; see the file LICENSE.
 
-// The law of fabrics at a point, and on a surface, against closed forms and the kinematics of
-// pin-jointed yarns.
+// The law of fabrics at a point and on a surface, against closed forms and pin-jointed yarns.
 
 #include "material/material_testing.h"
 #include "material/plane_stress.h"
@@ -45,16 +44,14 @@ Matrix pinned(double theta, double gamma)
   return {std::cos(a), x, 0, std::sin(a), y, 0, 0, 0, 1};
 }
 
-// force per width of warp or weft, at any angle between these, in tension; none in compression, and
-// none across the yarns
+// force per width of warp or weft, at any angle, in tension; none in compression or across yarns
 TEST(Woven, TensionAlongYarns)
 {
   for (const double theta : {90.0, 60.0, 135.0})
     for (const double stretch : {1.0001, 1.05, 1.4, 0.9}) {
       SCOPED_TRACE(joined(theta, " ", stretch));
       const auto material = make(woven(E1, E2, G, joined("angle ", theta)));
-      // along the warp, with a width at which the angle between yarns, and the length of the weft,
-      // stay
+      // along the warp, with a width at which the angle of yarns, and the length of the weft, stay
       const double t = theta * DEGREE;
       for (const int family : {0, 1}) {
         const double E = family == 0 ? E1 : E2;
@@ -82,8 +79,7 @@ TEST(Woven, TensionAlongYarns)
     }
 }
 
-// picture frame: the work of the corners' moment is the energy G gamma^2/2, and more beyond the
-// locking angle, to either side
+// picture frame: the work of the corners' moment is G gamma^2/2, and more beyond the locking angle
 TEST(Woven, PictureFrame)
 {
   const double lock = 40.0, GL = 2e7;

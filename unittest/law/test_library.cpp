@@ -159,8 +159,7 @@ TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
   }
 }
 
-// wet sand, gelatin, and the failure of Weldox: what the laws make of the values is what the
-// sources say
+// wet sand, gelatin, the failure of Weldox: laws make of the values what the sources say
 TEST(Library, WetSandIsAtCriticalState)
 {
   Point p(definition("Sand_Toyoura_wet_DP"));
@@ -199,8 +198,7 @@ TEST(Library, GelatinFollowsItsHugoniot)
     if (value(p, "damage") >= 1.0) failed = 0.01 * i;
     if (i > 60 && !failed) EXPECT_NEAR(p.vonmises(), 0.22e6, 1.0);
   }
-  // at a shear of sqrt(3) (plastic + elastic strain), with steps of 0.01 and some of the elastic
-  // shear lost as it turns
+  // at a shear of sqrt(3) in steps of 0.01, with some of the elastic shear lost as it turns
   EXPECT_NEAR(failed, std::sqrt(3.0) * (0.9 + 0.22e6 / (3 * 0.85e6)), 0.03);
   EXPECT_EQ(p.vonmises(), 0.0);
 }

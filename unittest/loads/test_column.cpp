@@ -167,8 +167,7 @@ SERIAL_TEST(Level, AmplifiesTheRock)
   for (const double v : most) EXPECT_NEAR(measured("top over exact", v / exact), 1.0, 0.02);
 }
 
-// Ground that yields, under its weight: the stress of the column comes to the sides, whatever its
-// material does
+// Ground that yields, under its weight: the stress of the column comes to the sides
 SERIAL_TEST(Level, YieldsLikeItsColumn)
 {
   Scene run(replaced(site("transfer aflip 1.0", true), "0.01*", "0.5*") +

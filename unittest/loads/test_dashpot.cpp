@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 300
 
-// Fix mpm/dashpot: waves leave bodies through dashpots and come in through them (benchmarks S3 and
-// S4).
+// Fix mpm/dashpot: waves leave bodies and come in through dashpots (benchmarks S3 and S4).
 
 #include "mpm_lammps.h"
 
@@ -107,8 +106,7 @@ PARAMETER_TEST(Normal, Leaves, Pulse,
   EXPECT_NEAR(e[10] / there, 0.0, 1e-11);
 }
 
-// Waves that come at an angle are reflected as pressure and shear waves, with the amplitudes of the
-// theory to 0.02 (benchmark S3)
+// Waves at an angle are reflected as pressure and shear waves, theory to 0.02 (benchmark S3)
 struct Incoming {
   bool shear;
   int angle;
@@ -206,8 +204,7 @@ PARAMETER_TEST(Rock, ShakesTheLayer, double, Values(1.0, 1.5707963267948966))
 }
 
 // The same at its resonance with the base in a plane of nodes, where points hardly reach the nodes
-// beyond it. The rock has the impedance alone: how this is made of density and speed does not
-// matter
+// beyond it. The rock has the impedance alone, of any density and speed
 SERIAL_TEST(Rock, ShakesTheLayerFromAPlaneOfNodes)
 {
   const double z = 0.25, omega = 0.5 * PI * CS / 20.0;
@@ -230,8 +227,7 @@ SERIAL_TEST(Rock, ShakesTheLayerFromAPlaneOfNodes)
   EXPECT_NEAR(most[1] / most[0], 1.0, 1e-6);
 }
 
-// A rigid base whose velocity is given, and the frame that moves with it, in which its acceleration
-// is a weight, are the same
+// A rigid base of given velocity is the same as weight in the frame that moves with it
 SERIAL_TEST(RigidBase, IsAWeightInItsFrame)
 {
   const double T = 30.0, V = 1e-4;
@@ -261,8 +257,7 @@ SERIAL_TEST(RigidBase, IsAWeightInItsFrame)
   EXPECT_LT(measured("difference of the two", off / most), 0.01);
 }
 
-// Ground that has its stress stands on the dashpots, and does not drift; with springs even from no
-// stress at all
+// Ground that has its stress does not drift on dashpots; with springs even from no stress
 SERIAL_TEST(Static, Stays)
 {
   for (const char *options :
@@ -287,8 +282,7 @@ SERIAL_TEST(Static, Stays)
   }
 }
 
-// A load that comes later sinks into dashpots with sigma/(rho c) and comes to rest on springs, at
-// sigma tau/(rho c)
+// A load that comes later sinks with sigma/(rho c), and on springs rests at sigma tau/(rho c)
 SERIAL_TEST(Spring, BearsALoad)
 {
   for (const double tau : {0.0, 100.0}) {
@@ -309,8 +303,7 @@ SERIAL_TEST(Spring, BearsALoad)
   }
 }
 
-// A block of ground that is cut out of more of it: base and sides hold it together, and edges do
-// not count twice
+// A block cut out of the ground: base and sides hold it together, edges do not count twice
 SERIAL_TEST(Static, CutOnThreeSides)
 {
   Scene run(
@@ -376,8 +369,7 @@ TEST(Dashpot, RanksAndRestart)
   }
 }
 
-// numbers of the input are those of the unit style: a body that moves as a whole feels rho c v on
-// the face
+// input is in the unit style: a body that moves as a whole feels rho c v on the face
 SERIAL_TEST(Units, OfForce)
 {
   for (const char *units : {"si", "metal", "real", "lj"}) {
@@ -395,8 +387,7 @@ SERIAL_TEST(Units, OfForce)
   }
 }
 
-// a face at 45 degrees to the lattice, of a body that moves as a whole: rho cp along its normal,
-// rho cs along it
+// a face at 45 degrees, of a body that moves as a whole: rho cp along its normal, rho cs along it
 SERIAL_TEST(Inclined, ForceOnTheFace)
 {
   Scene run(plane("lj", "f f", "0 24 0 24", 1, 0.3) + "fix grid all mpm 1.0\n" +
@@ -412,9 +403,8 @@ SERIAL_TEST(Inclined, ForceOnTheFace)
   EXPECT_NEAR((f[1] - f[0]) / (-2.0 * CS * scale * sqrt(2.0)), 1.0, 1e-3);
 }
 
-// the side of a tube around an axis of symmetry has the area of a cylinder, not that of the rings
-// below it: force on one that moves with the velocity 1, along the axis and away from it, in a step
-// that is too short to slow it down
+// the side of a tube around an axis has the area of a cylinder, not of the rings below: force on
+// one that moves with the velocity 1, along the axis and away from it, in a very short step
 SERIAL_TEST(Ring, ForceOnTheSide)
 {
   for (const bool along : {true, false}) {
@@ -430,8 +420,7 @@ SERIAL_TEST(Ring, ForceOnTheSide)
   }
 }
 
-// dashpots of two fixes on one face add up, which is told; not those of other faces, also at a
-// corner, or of other points
+// dashpots of two fixes on one face add up, which is told; not of other faces or points
 TEST(Dashpot, WarnsOfTwoOnOneFace)
 {
   const auto warnings = [](const std::string &second, int height = 4, int low = 2) {

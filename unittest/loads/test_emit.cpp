@@ -38,8 +38,7 @@ fix dt all mpm/dt 0.4
 )";
 }
 
-/** The mean of what a formula gives in each of so many steps, which start at a multiple of their
- *  number. */
+/** The mean of a formula over so many steps, which start at a multiple of their number. */
 double mean_of(Scene &run, const std::string &formula, int steps)
 {
   run.commands("variable f equal " + formula + "\nfix mean all ave/time 1 " +
@@ -66,8 +65,7 @@ void spacings(Scene &run, double spacing, double &least, double &most)
   }
 }
 
-// benchmark S5: the mass is that of the flow, and points are on their lattice, at any velocity and
-// offset of the mouth
+// benchmark S5: mass of the flow, and points on their lattice, at any velocity and offset
 struct Inflow {
   const char *options;
   double courant, offset;    // U dt/h, in cells
@@ -124,8 +122,7 @@ PARAMETER_TEST(Plug, IsExact, Inflow,
   EXPECT_LT(std::fabs(e[10]), 1e-9 * e[12]);                      // the residual
 }
 
-// the section, and not the lattice that fits into it, has the mass: a width of 5.3 points, and a
-// speed that varies and stops
+// the section has the mass, not the lattice in it: a width of 5.3 points, a speed that varies
 TEST(Plug, PulsesAndOddWidth)
 {
   const std::string scene = plane("si", "f f", "0 2 0 0.5", 1, 0.01) +
@@ -293,8 +290,7 @@ run 39
   EXPECT_EQ(n, 100);
 }
 
-// force on a wall and on a plate that a jet meets at an angle of 60 degrees (benchmark S5), flow
-// rates, and balance of mass
+// a jet on a wall and on a plate at 60 degrees (benchmark S5): force, flow rates, mass
 SERIAL_TEST(Jet, OnAWall)
 {
   Scene run(jet("region mouth block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.0125));
@@ -387,8 +383,7 @@ TEST(Plug, WorkOfAShakenMouth)
     }
 }
 
-// flow through a channel: a steady state with the same points on any number of processes, and after
-// a restart
+// flow through a channel: steady, the same points on any number of ranks and after a restart
 TEST(Channel, RanksAndRestart)
 {
   const std::string fixes = R"(
@@ -425,8 +420,7 @@ thermo_style custom step c_e
   }
 }
 
-// no point gets the ID of one that was removed, by any mouth, on any number of ranks, nor after a
-// restart
+// no point gets the ID of one that was removed, by any mouth, on any ranks, nor after a restart
 TEST(Channel, IDsComeOnce)
 {
   const std::string fixes = R"(
@@ -582,8 +576,7 @@ PARAMETER_TEST(Sink, HeatIsInBalance, const char *,
               1.0, 1e-9);
 }
 
-// a bar whose points differ in specific heat and first temperature is warmed and goes as a whole:
-// what went with it is what came
+// a bar of points that differ in heat is warmed and goes as a whole: what went is what came
 TEST(Sink, HeatOfPointsThatDiffer)
 {
   Scene run(plane("si", "p p", "0 2 0 0.2", 1, 0.025) +
@@ -599,8 +592,7 @@ TEST(Sink, HeatOfPointsThatDiffer)
   EXPECT_NEAR(measured("heat that went over what came", gone / came), 1.0, 1e-9);
 }
 
-// a column of an incompressible fluid runs out of the box: what is there and what has gone are all
-// of it, on any number of processes
+// a column of an incompressible fluid runs out of the box: what is there and has gone is all of it
 TEST(Channel, DrainOfAnIncompressibleFluid)
 {
   const std::string scene = plane("si", "f f", "0 2 0 1", 1, 0.025) + R"(

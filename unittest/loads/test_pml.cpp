@@ -36,9 +36,8 @@ double kinetic(Scene &run)
   return over_ranks(sum);
 }
 
-// Packets of plane waves that come at an angle to layers or dashpots at the end of a strip, against
-// a strip that goes on: amplitudes of the echoes, as pressure and shear waves, and their share of
-// the energy
+// Packets of plane waves at an angle to layers or dashpots at the end of a strip, against one that
+// goes on: amplitudes of the echoes, as pressure and shear waves, and their share of the energy
 struct Incoming {
   bool shear;
   int angle;
@@ -93,8 +92,7 @@ std::array<Velocities, 2> send(const Incoming &w, int length, const std::string 
   return found;
 }
 
-/** What comes back from the given end with some cells behind the strip, of what goes on without an
- *  end. */
+/** What comes back from the given end with some cells behind the strip, of what goes on without. */
 Echo echo(const std::string &name, const Incoming &w, const std::array<Velocities, 2> &without,
           int cells, const std::string &far)
 {
@@ -197,8 +195,7 @@ PARAMETER_TEST(Oblique, Leaves, Incoming,
   if (w.height > 4) LONG_CASE();
   const auto goes_on = send(w, w.length + 150, "");
   const Echo of_10 = echo("layer of 10 cells", w, goes_on, 10, layer(10));
-  // 0.01 comes back from the wall at 60 degrees, and more at those near it of which a packet is
-  // made, too
+  // 0.01 comes back at 60 degrees, and more at those near it of which a packet is made, too
   EXPECT_LT(of_10.p, w.angle < 60 ? 0.012 : 0.02);
   EXPECT_LT(of_10.s, w.angle < 60 ? 0.012 : 0.021);
   EXPECT_LT(of_10.energy, w.angle < 60 ? 1.5e-4 : 1e-3);
@@ -259,8 +256,7 @@ SERIAL_TEST(Pulse, LikeInALargeBody)
   EXPECT_GT(measured("energy of the difference, dashpots", off(velocities(16, dashpots))), 0.01);
 }
 
-// Velocities at random in a body with layers all around: energy is lost in each part of the run,
-// and nothing grows in 20,000 steps
+// Random velocities in a body with layers all around: energy falls in each part of 20,000 steps
 SERIAL_TEST(Noise, Decays)
 {
   for (const char *options : first_of(1, {"scheme musl", "", "shape cubic", "frame total"})) {

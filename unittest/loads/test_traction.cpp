@@ -23,8 +23,7 @@ std::string at_rest(double load, double tolerance = 3e-5)
                 tolerance);
 }
 
-/** A bar of length 1 and width w with free sides, a quarter of it, and a load on its end (benchmark
- *  S1). */
+/** A quarter of a bar of length 1 and width w with free sides and a load on its end (S1). */
 std::string bar(const std::string &options, double w, const std::string &load,
                 const std::string &end)
 {
@@ -154,8 +153,7 @@ SERIAL_TEST(Bar, UniaxialStrain)
       }
 }
 
-// resultant and moment are those of the traction on the face, wherever the layers of points are
-// below it
+// resultant and moment of the traction on the face, wherever layers of points are below it
 SERIAL_TEST(Face, ResultantAndMoment)
 {
   for (const double off : {0.0, 0.013, -0.02}) {
@@ -191,8 +189,7 @@ SERIAL_TEST(Face, ResultantAndMoment)
   }
 }
 
-// a face of a block whose other faces are open, a surface of triangles, and points that have an
-// area together
+// a face of a block open elsewhere, a surface of triangles, points that have an area together
 SERIAL_TEST(Face, OtherSurfaces)
 {
   std::string cube = "solid cube\n";
@@ -230,8 +227,7 @@ SERIAL_TEST(Face, OtherSurfaces)
   EXPECT_NEAR(tagged.fix_vector("load", 7)[1], 3.0 * 0.24, 1e-12);
 }
 
-// points at the surface that are parts of cells, at any place of a plane: area, resultant, and
-// moment
+// points that are parts of cells, at any place of a plane: area, resultant, and moment
 SERIAL_TEST(Face, PartsOfCells)
 {
   for (double part = 0.15; part < 1.1; part += 0.1) {
@@ -268,8 +264,7 @@ SERIAL_TEST(Face, PartsOfCells)
   EXPECT_NEAR(measured("relaxed: area over exact", area), 1.0, 0.015);
 }
 
-// planes that are inclined to the lattice of points, and what is told where layers are closer
-// together than points
+// planes at an angle to the lattice of points; layers closer together than points are told
 SERIAL_TEST(Face, Inclined)
 {
   const auto slope = [](double angle, const std::string &more) {
@@ -295,8 +290,7 @@ SERIAL_TEST(Face, Inclined)
   EXPECT_NEAR(run.fix_vector("load", 7)[3] / (18.0 * std::sqrt(2.0)), 1.0, 1e-12);
 }
 
-// a ball: no resultant, and the area but for terms of second order in the distance of points over
-// the radius
+// a ball: no resultant, and the area to second order in the distance of points over the radius
 SERIAL_TEST(Face, Ball)
 {
   Scene run(
@@ -309,8 +303,7 @@ SERIAL_TEST(Face, Ball)
   for (const int k : {0, 1, 2, 4, 5, 6}) EXPECT_NEAR(values[k], 0.0, 1e-12 * 3.0 * area);
 }
 
-/** A pipe of rubber under pressure, plane strain, a quarter of it, whose bore is cut by the lattice
- *  (benchmark S2). */
+/** A quarter of a pipe of rubber under pressure, plane strain, its bore cut by the lattice (S2). */
 static std::string rubber_pipe(const std::string &options, const std::string &load, double p)
 {
   return plane("si", "f f", "0 3.2 0 3.2", 1, 0.03) + "fix grid all mpm 0.1 " + options +
@@ -322,8 +315,7 @@ static std::string rubber_pipe(const std::string &options, const std::string &lo
                "fix load all mpm/traction region bore " + load + "\nrun 1000");
 }
 
-// a pipe of rubber under pressure, plane strain, a quarter of it, whose bore is cut by the lattice
-// (benchmark S2): radii to 1 %
+// benchmark S2: radii of the pipe to 1 %
 SERIAL_TEST(Pipe, Widens)
 {
   struct Case {
@@ -375,8 +367,7 @@ SERIAL_TEST(Pipe, StretchedTooMuchIsTold)
   EXPECT_NEAR(measured("stretch", stretch), 1.65, 0.1);
 }
 
-// pressure on all of a free body: neither force nor torque, though it moves, turns, and deforms,
-// and ends with that pressure inside
+// pressure on all of a free body: neither force nor torque while it moves, and that pressure inside
 SERIAL_TEST(Free, NoForceNoTorque)
 {
   for (const char *options :
@@ -478,9 +469,8 @@ SERIAL_TEST(Free, WaterAtRest)
   EXPECT_LT(measured("error of the stress", most / 9810), 0.02);
 }
 
-// a straight side around an axis of symmetry is a cylinder, whose deeper layers are rings of
-// another length: a tube under pressure inside has the resultant of its side, and the displacements
-// of Lame (plane stress)
+// a straight side around an axis is a cylinder, whose deeper layers are rings of another length: a
+// tube under pressure has the resultant of its side, and displacements of Lame (plane stress)
 SERIAL_TEST(Tube, AroundAnAxis)
 {
   for (const char *options : {"stress gradient", "frame total"}) {
@@ -566,8 +556,7 @@ SERIAL_TEST(Units, OfForce)
   }
 }
 
-// pressure turns with the body, of whatever law: the resultant is that of the face, and keeps its
-// size
+// pressure turns with the body, of any law: the resultant is that of the face, and keeps its size
 SERIAL_TEST(Face, Turns)
 {
   for (const char *law : {"linear 1e6 0.3", "neohookean 1e6 0.3"})
@@ -699,8 +688,7 @@ TEST(Record, TableInTime)
   EXPECT_THAT(error_of(scene + record + " hold maybe\n"), HasSubstr("hold"));
 }
 
-// a plane in the middle of a body is no surface: its load would act on the section, as would that
-// of a step on what goes on above it
+// a plane in a body is no surface: loads would act on the section, or on what goes on above a step
 SERIAL_TEST(Plane, ThroughABodyIsTold)
 {
   const auto told = [](const std::string &bodies, double height, const std::string &group) {

@@ -202,8 +202,7 @@ inline void moves(MaterialPoint &p, const Matrix &A, double dt, int n = 1)
 
 /** Makes n steps of a motion F(t), t from 0 to 1, of two points, plain and turned. The motion of
  *  the second point is rotated in addition, by an angle that grows to the given one. Calls
- *  check(plain, turned, difference) after each step; difference: of the stress from that of plain,
- *  rotated. */
+ *  check(plain, turned, difference) after each step; difference: of stress from plain, rotated. */
 template <class Motion, class Check>
 void turn_on_top(const Material &material, const Motion &F, double angle, int n, const Check &check)
 {
@@ -340,8 +339,7 @@ inline void follow(MaterialPoint &p, const std::function<Matrix(double)> &L, dou
 
 /** Unknowns of a system of differential equations. */
 using State = std::vector<double>;
-/** Integrates dy/dt = f(t, y) from t = 0 to the time in n steps of the classical Runge-Kutta
- *  method. */
+/** Integrates dy/dt = f(t, y) from t = 0 in n steps of the classical Runge-Kutta method. */
 inline State runge_kutta(const std::function<State(double, const State &)> &f, State y, double time,
                          int n)
 {

@@ -4,8 +4,7 @@
 // labels: unit
 
 // Surfaces and lines: the stretch across them, and what does not resist compression. The
-// neo-Hookean law in plane stress against its own equations, solved here; pressures of balloons are
-// section R2 of the benchmarks.
+// neo-Hookean law against its own equations, solved here; balloons: benchmark R2.
 
 #include "material/material_testing.h"
 #include "material/plane_stress.h"
@@ -98,8 +97,7 @@ Matrix diagonal(double a, double b)
   return {a, 0, 0, 0, b, 0, 0, 0, 1};
 }
 
-// stretches along both axes: nothing acts across, and the rest is that of the law with the
-// thickness which follows
+// stretches along both axes: nothing acts across, the rest is the law with that thickness
 TEST(PlaneStress, Surface)
 {
   for (const double nu : {0.0, 0.3, 0.45})
@@ -133,8 +131,7 @@ TEST(PlaneStress, Balloon)
   }
 }
 
-// what is narrower than it would be by itself wrinkles, and is in uniaxial tension however narrow
-// it is
+// what is narrower than it would be by itself wrinkles, in uniaxial tension however narrow it is
 TEST(PlaneStress, Wrinkles)
 {
   const double nu = 0.3, a = 1.5;
@@ -164,8 +161,7 @@ TEST(PlaneStress, Wrinkles)
   EXPECT_GT(slack.go(diagonal(1.1, 0.4))[0] / E, 0.05);
 }
 
-// The energy is that of the motion alone, and stress is its gradient, along any direction and
-// turned in space
+// Energy is that of the motion alone, and stress its gradient, along any direction and turned
 TEST(PlaneStress, StressIsTheGradientOfEnergy)
 {
   const double c = cos(0.8), s = sin(0.8);
@@ -229,8 +225,7 @@ TEST(PlaneStress, Lines)
   EXPECT_NEAR(truss.go(diagonal(0.7, 1.0))[0] / neohookean(nu, 0, 0.7, more, more), 1.0, 1e-8);
 }
 
-// a metal sheet in uniaxial tension beyond yield, in many steps: strength of the law, free of
-// stress across in each of them
+// a metal sheet in uniaxial tension beyond yield: strength of the law, no stress across in any step
 TEST(PlaneStress, PlasticStrip)
 {
   Surface s("density 1 eos linear 1000 strength j2 400 1 hardening linear 0", 3, 1, true);
@@ -239,9 +234,8 @@ TEST(PlaneStress, PlasticStrip)
   EXPECT_NEAR(stress, 1.0, 2e-3);
 }
 
-// metals, rubber, concrete, glass, ice, snow: also those that yield, soften, and break, whose
-// stress has kinks and steps, go through a random motion with nothing across, up to what a stretch
-// found to 1e-11 leaves
+// metals, rubber, concrete, glass, ice, snow, whose stress has kinks and steps, go through a random
+// motion with nothing across, up to what a stretch found to 1e-11 leaves
 TEST(PlaneStress, AnyLaw)
 {
   for (const std::string name :
@@ -312,8 +306,7 @@ TEST(PlaneStress, Refuses)
             std::string::npos);
 }
 
-// gas: blow-down through a choked nozzle, section V2; filling of an empty bag, and of one that
-// holds as much before
+// gas: blow-down through a choked nozzle (V2); filling of an empty bag, and of a full one
 TEST(BagGas, BlowDownAndFilling)
 {
   const double gamma = 1.4, R = 287.0, T = 300.0, V = 0.1, p = 1e6, area = 1e-4;

@@ -4,8 +4,7 @@
 // labels: unit physics input
 // mpi: 1 2
 
-// Mixed control of a single point against closed forms, and the command mpm_point with its paths,
-// its table, and its errors.
+// Mixed control of a point against closed forms; the command mpm_point: paths, table, errors.
 
 #include "material/material_testing.h"
 #include "mpm_lammps.h"
@@ -333,8 +332,7 @@ TEST(Point, FormulasOfTime)
   EXPECT_NEAR(t["Fxy"][25], -1.0, 1e-12);
 }
 
-// density is in mass/distance^3 units: here g/mol/Angstrom^3, velocity in Angstrom/ps, stress in
-// bar
+// density in mass/distance^3: here g/mol/Angstrom^3, velocity in Angstrom/ps, stress in bar
 TEST(Point, Units)
 {
   auto si = drive("uniaxial/strain -1e9 strain 0.1 material density 2700 eos shock 5350 1.34 2");
@@ -346,9 +344,8 @@ TEST(Point, Units)
   EXPECT_NEAR(metal["energy"].back() * 1e5, si["energy"].back(), 1e-6 * si["energy"].back());
 }
 
-// a path that leaves two ranges of the material, one of them in many steps: one warning each, with
-// the first step; a path inside: none shear that leaves the principal stretches 10^15 apart has the
-// strain of the closed form
+// a path that leaves two ranges, one in many steps: one warning each, with the first step; shear
+// that leaves the principal stretches 10^15 apart has the strain of the closed form
 TEST(Point, StrainOfLargeShear)
 {
   for (const std::string path : {"shear 1 strain 100 steps 50", "shear 1 strain 8.2e7 steps 20"}) {
@@ -394,8 +391,7 @@ TEST(Point, LeavingARangeWarnsOnce)
     return lines;
   };
   EXPECT_EQ(warnings("uniaxial/strain -1 strain 0.01 steps 100").size(), 0);
-  // true strain 0.001 a step: density above 1020 from step 20, p = K (1/J - 1) above 30.5 MPa from
-  // 31
+  // true strain 0.001 a step: density above 1020 from step 20, K (1/J - 1) above 30.5 MPa from 31
   const auto found = warnings("uniaxial/strain -1 strain 0.05 steps 50");
   ASSERT_EQ(found.size(), 2);
   EXPECT_NE(found[0].find("density 1020.2 at step 20"), std::string::npos) << found[0];

@@ -18,8 +18,7 @@ constexpr int COMPONENT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 /** Motions of the points of a batch. */
 using Motions = std::vector<Matrix>;
 
-/** Makes the step F_new = (I + A) F of points, each with a motion of its own; t: also the
- *  tangent. */
+/** Makes the step F_new = (I + A) F of points with motions of their own; t: also the tangent. */
 void make_step(MaterialPoint &p, const Motions &A, double dt, Tangent *t = nullptr)
 {
   Batch &b = p.batch;
@@ -69,8 +68,7 @@ double largest(const Tangent &t, int i)
 
 /** Compares the tangent of a step with differences of the update, of fourth order in h. Returns the
  *  number of points with another tangent for which the differences are no derivative either, as
- *  there is a kink of the update within 2 h: those of second order in h and in 2 h, or those to
- *  both sides, do not agree. */
+ *  there is a kink of the update within 2 h: those in h and 2 h, or to both sides, do not agree. */
 int expect_tangent(const MaterialPoint &before, const Motions &A, double dt, double h,
                    double tolerance)
 {
@@ -393,9 +391,8 @@ TEST(Tangent, OnBothSidesOfYield)
   }
 }
 
-// without any motion, and with motions so small that squares of their strains or stresses
-// underflow, in SI units and in others whose numbers are large or small: finite, and the same as
-// that of a small motion
+// without motion, and with motions so small that squares of strains or stresses underflow, in SI
+// and other units: finite, and the same as that of a small motion
 TEST(Tangent, OfNextToNoMotion)
 {
   std::vector<Sample> all(std::begin(samples), std::end(samples));
@@ -444,8 +441,7 @@ TEST(Tangent, OfNextToNoMotion)
 
 TEST(Tangent, ConvergesQuadratically)
 {
-  // uniaxial stress after a large plastic strain, found by Newton's method for the lateral
-  // stretches
+  // uniaxial stress after a large plastic strain, by Newton's method for lateral stretches
   const auto material =
       make("density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening voce 2e8 15 1e8");
   MaterialPoint before(*material);

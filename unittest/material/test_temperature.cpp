@@ -86,8 +86,7 @@ TEST(Expansion, IsTakenOutOfTheMotionOfAnyLaw)
   EXPECT_GT(n, 30 * 40);
 }
 
-// no stress when nothing hinders the expansion, at small and at 30 % strain, in one step and in
-// many
+// no stress when nothing hinders expansion, at small and at 30 % strain, in one step and in many
 TEST(Expansion, FreeBodyHasNoStress)
 {
   for (const char *law :
@@ -110,8 +109,7 @@ TEST(Expansion, FreeBodyHasNoStress)
       }
 }
 
-// a bar between walls, with free sides: -E ALPHA dT, and for 30 % the stress of a compression to
-// 1/1.3
+// a bar between walls, free sides: -E ALPHA dT, and for 30 % the stress of compression to 1/1.3
 TEST(Expansion, ClampedBar)
 {
   MixedControl clamped;
@@ -171,8 +169,7 @@ TEST(Expansion, EnergyBalance)
   }
 }
 
-// GAMMA = 3 K ALPHA/(density CP): compression warms, and is stiffer by 1 + (3 ALPHA)^2 K T/(density
-// CP)
+// GAMMA = 3 K ALPHA/(density CP): compression warms, stiffer by 1 + (3 ALPHA)^2 K T/(density CP)
 TEST(Expansion, ConsistentCoupling)
 {
   const double K = 70e9 / (3 * (1 - 2 * 0.33)), alpha = 23e-6, capacity = 2700.0 * 900;
@@ -201,8 +198,7 @@ TEST(Expansion, ConsistentCoupling)
   }
 }
 
-// what stays at constant volume is dp/dT = 3 K ALPHA: with a CP that depends on T, integral of CP/T
-// dT is
+// constant at constant volume is dp/dT = 3 K ALPHA: if CP depends on T, the integral of CP/T dT is
 // -3 K ALPHA/density (J - 1), there and back; with ALPHA that depends on T it is the coupling of
 // its value at T0
 TEST(Expansion, ConsistentCouplingOfWhatVaries)
@@ -268,8 +264,7 @@ TEST(Expansion, EachPointStartsFromItsOwnTemperature)
 }
 
 // aluminum warmed by 100 K, or strained by 1e-3: free strain, stress between walls and in a die,
-// elastic cooling, and the adiabatic bulk modulus. These are linear in what is done, of which a
-// small part is done here
+// elastic cooling, and the adiabatic bulk modulus; linear, so that a small part is done
 TEST(Expansion, Aluminum)
 {
   constexpr double PART = 1e-4;
@@ -322,8 +317,7 @@ TEST(Expansion, BadInputIsRefused)
 
 /* ---------------------------------------------------------------------- heat that is conducted */
 
-/** Equations of state with an internal energy, dp/dE at J = 1, and the bulk modulus without
- *  energy. */
+/** Equations of state with internal energy, dp/dE at J = 1, and bulk modulus without energy. */
 struct WithEnergy {
   const char *eos;
   double density, gamma, K;
@@ -616,8 +610,7 @@ TEST(Vary, ShareOfPlasticWork)
       }
 }
 
-// a specific heat by a formula: the temperature has the heat that is its integral, through melting,
-// too
+// specific heat by a formula: the temperature has the heat that is its integral, also in melting
 TEST(Vary, SpecificHeatByFormula)
 {
   struct {
@@ -773,8 +766,7 @@ TEST(Sources, WorkOfDamage)
 }
 
 // the heat of a damage is in the internal energy as it is in the temperature, and raises the
-// pressure. A point that is torn apart and pushed together again: work of the pressure is what is
-// stored, and what is set free
+// pressure. A point is torn apart and pushed together: work is what is stored and set free
 TEST(Sources, WorkOfDamageRaisesThePressure)
 {
   constexpr double SHARE = 0.6, CP = 900;
@@ -836,9 +828,8 @@ TEST(Sources, WorkOfDamageRaisesThePressure)
       }
 }
 
-// the same in any motion, with plastic work, to second order in the step as without heat; plastic
-// work that is heat in tension brings an error that has nothing to do with that of the damage, so
-// that there is none of it here
+// the same in any motion, with plastic work, to second order in the step as without heat; without
+// plastic work in tension, which has an error of its own
 TEST(Sources, WorkOfDamageWithPlasticWork)
 {
   const std::string start = "density 7850 eos shock 4600 1.4 2 strength j2 77e9 490e6 damage ";
@@ -870,8 +861,7 @@ TEST(Sources, WorkOfDamageWithPlasticWork)
       for (int level = 0; level < 3 && chi == 0.0; level++)
         EXPECT_LT(error[level], 6e-5 / (1 << 4 * level) * scale) << level;
     }
-  // detonation products bear no tension, but break by shear: their temperature follows from the
-  // energy
+  // detonation products bear no tension, but break by shear: temperature follows from energy
   Point p(
       "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930 strength j2 3e9 1e8 damage "
       "johnson/cook 0.05 0 0 thermal conducting 1000 293 1 0.9 fracture 0.5");
@@ -910,8 +900,7 @@ TEST(Sources, AllDissipation)
   EXPECT_GT(n, 30);
 }
 
-// detonation products have the temperature of their thermal energy, which falls as J^-OMEGA; half
-// burnt, half of it
+// temperature of detonation products is of thermal energy, falling as J^-OMEGA; half burnt, half
 TEST(Sources, DetonationProducts)
 {
   const double A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = 7e9;

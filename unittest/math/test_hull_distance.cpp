@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// The shortest way between convex hulls, from nothing but the points that are farthest along a
-// direction.
+// The shortest way between convex hulls, from the points that are farthest along a direction.
 
 #include "math/hull_distance.h"
 

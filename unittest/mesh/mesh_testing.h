@@ -18,8 +18,7 @@ const double nodes[9][3] = {{0, 0, 0}, {1, 0, 0},       {1, 1, 0}, {0, 1, 0}, {0
 const int cube[8] = {0, 1, 2, 3, 4, 5, 6, 7}, tet[4] = {0, 3, 4, 8};
 constexpr double VOLUME = 1.25 + 1.0 / 6.0;
 
-/** A file of numbers as text, or as bytes with the least (LITTLE) or most significant one (BIG)
- *  first. */
+/** A file of numbers as text, or as bytes, the least (LITTLE) or most significant (BIG) first. */
 struct MeshOutput {
   enum Kind { TEXT, LITTLE, BIG } kind;
   std::string all;
@@ -152,8 +151,7 @@ inline std::string base64(const std::string &bytes)
 }
 
 /** The mesh as an XML file of VTK, little-endian. format: "ascii" (numbers as text), "binary"
- *  (base64 inside of the tags), or "base64" or "raw" (encoding of the data appended after the
- *  tags). */
+ *  (base64 inside of the tags), or "base64" or "raw" (data after the tags). */
 inline std::string vtu(const std::string &format)
 {
   const bool ascii = format == "ascii", inside = ascii || format == "binary";

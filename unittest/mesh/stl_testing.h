@@ -112,8 +112,7 @@ inline Soup both(Soup soup, const Soup &other)
   return soup;
 }
 
-/** Ball of the given radius: an icosahedron whose triangles are divided into four this many
- *  times. */
+/** Ball of this radius: an icosahedron whose triangles are divided into four this many times. */
 inline Soup ball(double radius, int divisions)
 {
   const auto onto = [](Point x) {
@@ -147,8 +146,7 @@ inline Soup ball(double radius, int divisions)
   return soup;
 }
 
-/** Prism over a polygon, from z = 0 to the height. cut: triangles of the polygon, by their
- *  corners. */
+/** Prism over a polygon, from z = 0 to height. cut: triangles of the polygon, by corners. */
 inline Soup prism(const std::vector<std::array<double, 2>> &p, double height,
                   const std::vector<std::array<int, 3>> &cut)
 {

@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// Meshes as the grid under points: which cell a point is in, shape functions, sides; elements that
-// are divided.
+// Meshes as the grid under points: cells of points, shape functions, sides, divided elements.
 
 #include "mesh/background_mesh.h"
 
@@ -18,9 +17,8 @@
 using namespace MPM_NS;
 using ::testing::HasSubstr;
 
-/** n cells along each axis of a unit square or cube, distorted by a smooth map: kind 0: quadrangles
- *  or hexahedra, 1: each divided into triangles or tetrahedra. The side x = 0 is the group
- *  "left". */
+/** n cells along each axis of a unit square or cube, distorted smoothly: kind 0: quadrangles or
+ *  hexahedra, 1: each divided into triangles or tetrahedra. The side x = 0 is the group "left". */
 Mesh block(int dim, int n, bool simplices, double distortion = 0.1)
 {
   Mesh mesh;
@@ -143,8 +141,7 @@ TEST_P(Kinds, FunctionsAreLinearlyComplete)
   }
 }
 
-// Neighbors know each other; sides of a closed surface point outward and sum to nothing, their
-// moments to the volume
+// Neighbors know each other; sides of a closed surface sum to nothing, their moments to the volume
 TEST_P(Kinds, SidesAndNeighbors)
 {
   const auto [dim, simplices] = GetParam();
@@ -268,8 +265,7 @@ TEST(BackgroundMesh, WhatIsNoGrid)
               HasSubstr("is between two cells"));
 }
 
-// Children have equal shares of straight elements and all of bent ones, none is folded, and they
-// are where their parent was
+// Children share straight elements evenly and have all of bent ones, unfolded, where parents were
 TEST_P(Kinds, Halves)
 {
   const auto [dim, simplices] = GetParam();

@@ -5,8 +5,7 @@
 // timeout: 300
 
 // Files of bodies that are cut, changed, or nonsense, in all formats: each is read, or is an error
-// that begins with the name of the file; nothing crashes or takes long. Builds with MPM_SANITIZE
-// see each access beyond the end.
+// that begins with the name of the file; nothing crashes or takes long.
 
 #include "bad_input_testing.h"
 #include "image/image_testing.h"

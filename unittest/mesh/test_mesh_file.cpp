@@ -50,8 +50,7 @@ std::string turned_cube(double angle, double top)
 TEST(MeshFile, VolumesOfTwistedElements)
 {
   const double pi = 3.14159265358979323846;
-  // section at height z: the corner goes along a line, so its distance squared is (1-z)^2 + 2 z
-  // (1-z) s c + z^2 s^2
+  // section at z: the corner goes along a line, distance squared (1-z)^2 + 2 z (1-z) s c + z^2 s^2
   const auto exact = [](double angle, double s) {
     return (1.0 + s * std::cos(angle) + s * s) / 3.0;
   };

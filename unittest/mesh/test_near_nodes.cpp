@@ -18,8 +18,7 @@
 
 using namespace MPM_NS;
 
-// a row of nodes that meets itself at one end: paths along it, not distances, and the shorter way
-// where there are two
+// a row of nodes that meets itself at one end: paths along it, not distances, the shorter of two
 TEST(NearNodes, ByPaths)
 {
   const NearNodes open(6, {{0, 1, 1.0}, {1, 2, 1.0}, {2, 3, 1.0}, {3, 4, 1.0}, {4, 5, 1.0}}, 2.5);
@@ -105,8 +104,7 @@ TEST(Passages, SideOfAFace)
   EXPECT_FALSE(within);
 }
 
-// a side that changes tells a passage, but not where a node was or is not seen, nor where it stays
-// beyond an edge
+// a change of side tells a passage, but not where a node was not seen, or stays beyond an edge
 TEST(Passages, Looks)
 {
   using Sight = Passages::Sight;

@@ -72,8 +72,7 @@ TEST(SurfaceMesh, NormalsHaveTheSymmetryOfTheBody)
     }
 }
 
-// in the corners of a box all of its faces, outside of its edges the edge, never the far face of a
-// plate
+// in corners of a box all faces, outside of its edges the edge, never the far face of a plate
 TEST(SurfaceMesh, TouchesEachPartOnce)
 {
   const SurfaceMesh mesh(text_of(box({0.0, 0.0, 0.0}, {4.0, 4.0, 1.0})), "box", 1.0,

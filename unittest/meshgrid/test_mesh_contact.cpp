@@ -99,8 +99,7 @@ SERIAL_TEST(MeshContact, BlockThatIsPulled)
                            until));
     return run.variable("x") - x;
   };
-  // what is held moves by its shear, rho a H (H/2 + H_floor)/G: the floor is longer than the block,
-  // and moves less
+  // what is held moves by rho a H (H/2 + H_floor)/G: the floor is longer, and moves less
   const double shear = 0.5 / 385 * (0.5 / 2 + 0.5);
   EXPECT_LT(measured("way of a block that is held", way("law coulomb 0.4", 0.3, 1.0)), 0.3 * shear);
   EXPECT_LT(measured("by static friction only", way("law coulomb 0.1 0.4", 0.15, 1.0)),
@@ -180,8 +179,7 @@ SERIAL_TEST(MeshContact, BlocksAtRest)
   }
 }
 
-/** A block on a block between smooth walls, under a load on the upper side of the mesh. parts: the
- *  upper one is two of them. */
+/** A block on a block between smooth walls, a load on top of the mesh. parts: two upper blocks. */
 std::string pressed(const std::string &mesh, const std::string &load, bool parts)
 {
   return box(2, "lj", "f f p", "0 1.6 0 1 -0.5 0.5", 3, 0.1) +
@@ -218,8 +216,7 @@ SERIAL_TEST(MeshContact, PressedBlock)
                    "fix mean all ave/time 1 400 400 v_f\nrun 2000\n");
       const double mean = run.lmp->modify->get_fix_by_id("mean")->compute_scalar();
       EXPECT_NEAR(measured(std::string(load) + ": contact over load", mean / 8.0), 1.0, 0.01);
-      // uniaxial strain; in triangles, points on sides between these make bodies softer, without
-      // contact, too
+      // uniaxial strain; points on sides of triangles make bodies softer, without contact, too
       if (kind != QUADS) continue;
       double top = 0.0, n = 0.0;
       for (int i = 0; i < run.n(); i++)
@@ -232,8 +229,7 @@ SERIAL_TEST(MeshContact, PressedBlock)
     }
 }
 
-// Where two bodies meet at the side, each has its share of the load: nothing of it is lost, and
-// nothing is there twice
+// Where two bodies meet at the side, each has its share of the load: none is lost or there twice
 SERIAL_TEST(MeshContact, LoadOfTwoBodies)
 {
   const ScratchFile file("pressed.msh", cells(QUADS, 0.1, {16, 10, 0}));

@@ -77,8 +77,7 @@ SERIAL_TEST(MeshGrid, TubeUnderPressure)
         }
         error[n == 12] =
             measured(strprintf("error with %d cells, %s", n, frame.c_str()), sqrt(square / all));
-        // what holds the quarter is the pressure on the bore, which in the total frame is that of
-        // the body by now
+        // pressure on the bore holds the quarter, in the total frame that of the body by now
         const double u = (1 + nu) / E * p / 3.0 * ((1 - 2 * nu) + 4.0);
         const double bore = frame == "total" ? 1.0 + u : 1.0;
         for (const int k : {6, 8}) EXPECT_NEAR(entry(run, k), -p * bore, 1e-6 * p);
@@ -102,8 +101,7 @@ SERIAL_TEST(MeshGrid, TubeAtFiniteStrain)
       run.commands("fix v all viscous 0.02\nfix d all mpm/dt 0.5 until 60\nrun 100000\n");
       const auto end = run.gather();
 
-      // points do not lie on the surfaces: a and b from the area of their circles, which is linear
-      // next to these
+      // points are off the surfaces: a and b from the area of their circles, linear next to these
 
       double low[4] = {0.0}, high[4] = {0.0};    // of the fits of r^2 by R^2: sums of x, y, xx, xy
       int n[2] = {0, 0};
@@ -127,9 +125,8 @@ SERIAL_TEST(MeshGrid, TubeAtFiniteStrain)
     }
 }
 
-// A bar that is pulled by its ends has one stress everywhere. Linear functions have its strain
-// exactly on any mesh; the forces of points in bent quadrangles and hexahedra are those of a
-// midpoint rule
+// A bar pulled by its ends has one stress. Linear functions have its strain exactly on any mesh;
+// the forces of points in bent quadrangles and hexahedra are those of a midpoint rule
 SERIAL_TEST(MeshGrid, PatchOfAnyCells)
 {
   for (const Kind kind : {TRIANGLES, QUADS, TETRAHEDRA, HEXAHEDRA}) {
@@ -208,8 +205,7 @@ SERIAL_TEST(MeshGrid, EnergyAndMomentum)
     }
 }
 
-// A fluid that spins between curved walls keeps to its circles: it feels no force but that towards
-// the center, m v^2/r
+// A fluid that spins between curved walls keeps to its circles: the only force is m v^2/r
 SERIAL_TEST(MeshGrid, SlipAlongACurve)
 {
   const auto ring = gmsh(QUADS, {6, 48, 0}, [](double s, double t, double) {
@@ -244,8 +240,7 @@ SERIAL_TEST(MeshGrid, SlipInACorner)
             "velocity all set -0.2 -0.1 0\ntimestep 0.01\nrun 1\n");
   for (const auto &s : run.gather())
     if (s.x[0] < 0.15 && s.x[1] < 0.15) {
-      // a fourth of the way into the cell: its corner has no velocity, two nodes one along their
-      // wall
+      // a fourth of the way into the cell, whose corner has no velocity, two nodes one along a wall
       EXPECT_NEAR(s.v[0], -0.2 * 0.25, 1e-12);
       EXPECT_NEAR(s.v[1], -0.1 * 0.25, 1e-12);
     }
@@ -308,8 +303,7 @@ TEST(MeshGrid, RanksAndRestart)
     }
 }
 
-// A pressure, or means against locking, that come after a restart know where the nodes have gone;
-// another frame is an error
+// A pressure or means against locking after a restart know where nodes are; another frame fails
 SERIAL_TEST(MeshGrid, MoreOptionsAfterARestart)
 {
   const ScratchFile file("tube.msh", tube(QUADS, 4)), restart("restart");
@@ -389,8 +383,7 @@ SERIAL_TEST(MeshGrid, BadInput)
             0u);
 }
 
-// Linear cells lock when the material keeps its volume, which is said: but of none that keep it
-// without more, and of no fluids
+// Linear cells that lock as the material keeps its volume are told of, but no others, nor fluids
 SERIAL_TEST(MeshGrid, Locking)
 {
   const ScratchFile triangles("triangles.msh", tube(TRIANGLES, 4)),
@@ -417,8 +410,7 @@ SERIAL_TEST(MeshGrid, Locking)
   EXPECT_EQ(warnings(triangles, "neohookean 1 0.499", 0, "locking fbar"), 0u);
 }
 
-// Lame's tube with a Poisson ratio of 0.499 widens as it should with means, and quadrangles by half
-// of that without
+// Lame's tube, Poisson ratio 0.499, widens as it should with means, quadrangles by half without
 SERIAL_TEST(MeshGrid, FbarDoesNotLock)
 {
   const double p = 1e-5, nu = 0.499;
@@ -492,8 +484,7 @@ SERIAL_TEST(MeshGrid, LostLoads)
   EXPECT_THAT(half[0], HasSubstr("traction on xhi acts on nothing in 43.8 % of its area"));
 }
 
-// Points on sides between triangles have the strain of one of them by rounding: bodies are too
-// soft, and it is told
+// Points on sides of triangles have the strain of one by rounding: too soft, which is told
 SERIAL_TEST(MeshGrid, PointsOnSides)
 {
   // a column whose points are on the diagonals, or moved off these

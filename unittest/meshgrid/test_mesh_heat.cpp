@@ -4,8 +4,7 @@
 // labels: physics mpi restart input ranks
 // mpi: 1 4
 
-// Fix mpm/mesh/heat: conduction between points on a mesh, with temperatures, fluxes, and convection
-// at its groups.
+// Fix mpm/mesh/heat: conduction on a mesh; temperatures, fluxes, and convection at its groups.
 
 #include "bad_input_testing.h"
 #include "meshgrid/mesh_grid_testing.h"
@@ -153,8 +152,7 @@ SERIAL_TEST(MeshHeat, FluxAndConvection)
   EXPECT_NEAR(out(run, 2), -2.0, 1e-10);
 }
 
-// A body that is stretched along the flow by 1.5 conducts less, by that factor, and one that is
-// stretched across more
+// A body stretched by 1.5 along the flow conducts less, by that factor, across it more
 SERIAL_TEST(MeshHeat, OfAStretchedBody)
 {
   for (const bool along : {true, false}) {
@@ -195,10 +193,9 @@ TEST(MeshHeat, RanksAndRestart)
   EXPECT_EQ(run.whole.fix("h")->compute_scalar(), run.again.fix("h")->compute_scalar());
 }
 
-// Two layers of conductivities 1 and 10, from x = 0.5 or in the middle of the next cells: with the
-// conductivities of the points 8 and 4 % too much heat went through the latter. Not so with means,
-// also in a body that is stretched along or across the layers; triangles have an error of first
-// order
+// Two layers of conductivities 1 and 10, from x = 0.5 or in the middle of the next cells: there was
+// 8 and 4 % too much heat with those of points. Not so with means, also in a stretched body;
+// triangles have an error of first order
 SERIAL_TEST(MeshHeat, LayersThatCutCells)
 {
   for (const Kind kind : {QUADS, TRIANGLES})

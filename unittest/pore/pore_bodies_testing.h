@@ -4,8 +4,7 @@
 #ifndef MPM_PORE_BODIES_TESTING_H
 #define MPM_PORE_BODIES_TESTING_H
 
-// Bodies with pore water that collide, for tests of fix mpm/pore on several ranks and after
-// restarts.
+// Bodies with pore water that collide, for tests of fix mpm/pore on ranks and after restarts.
 
 #include "mpm_lammps.h"
 
@@ -14,8 +13,7 @@
 namespace MPM_TEST {
 
 /** Input of a disk and a block of soils and a dry block, which collide across ranks and periodic
- *  faces. water: arguments of fix mpm/pore; variables: input lines that define the variables in
- *  them. */
+ *  faces. water: arguments of fix mpm/pore; variables: lines that define variables in them. */
 inline std::string colliding(const std::string &variables, const std::string &water)
 {
   return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +

@@ -21,8 +21,7 @@ struct Mode {
 
 /** Velocity of the soil at the given times, in units of its initial value. The velocity v of the
  *  soil, the flow w, the stress s, and the pressure p of the mode are integrated by RK4, with v = 1
- *  and the others 0 at the start. moves: false for the u-p formulation, in which w follows the
- *  pressure without inertia. */
+ *  and the others 0 at the start. moves: false for u-p, without inertia of w. */
 inline std::vector<double> exact(const Mode &mode, const std::vector<double> &times,
                                  bool moves = true)
 {
@@ -60,9 +59,8 @@ inline std::vector<double> exact(const Mode &mode, const std::vector<double> &ti
   return result;
 }
 
-/** Runs the mode for about this many periods. Appends the times of the steps to t, and to y the
- *  amplitude of the velocity of the points in units of the initial one. formulation: options of fix
- *  mpm/pore. */
+/** Runs the mode for about this many periods. Appends times of steps to t, and to y the amplitude
+ *  of the velocity of points in units of the initial one. formulation: options of fix mpm/pore. */
 inline void vibrate(const Mode &mode, const std::string &formulation, double periods,
                     std::vector<double> &t, std::vector<double> &y)
 {

@@ -47,8 +47,7 @@ constexpr double LOAD = 1.0e4, PI2 = 0.5 * PI, MODULUS = 1e7 * 0.7 / (1.3 * 0.4)
 
 /** Input of a column of soil from y = 0 to y = 1, with n cells, on a smooth floor. It is four cells
  *  wide and periodic along x. water, material: arguments of fix mpm/pore and fix mpm/material; top:
- *  upper face of the box; offset: distance of the floor from nodes, in cells; floor: faces that are
- *  walls. */
+ *  upper face of the box; offset: of the floor from nodes, in cells; floor: walls. */
 inline std::string column(int n, const std::string &water, const std::string &material,
                           double top = 1.2, double offset = 0.0, const std::string &floor = "ylo")
 {
@@ -62,8 +61,7 @@ inline std::string column(int n, const std::string &water, const std::string &ma
 }
 constexpr const char *SOIL = "density 2002 linear 1e7 0.3";
 
-/** Input of a load q per area on the topmost row of points of column(n). It grows during the time
- *  ramp. */
+/** Input of a load q per area on the topmost row of points of column(n). It grows for ramp. */
 inline std::string load(int n, double q, double ramp)
 {
   const double h = 1.0 / n;
@@ -106,8 +104,7 @@ inline double difference_from_terzaghi(Scene &run, Water &water, double p0, doub
 
 /** Scatter of the pressure in a column of 20 cells, as a part of the load: the standard deviation
  *  from Terzaghi's solution below the uppermost three cells after 60 ms. The load grows in 30 ms,
- *  in which the water has no time to flow through a cell. Kf, k: bulk modulus and conductivity;
- *  options: of mpm/pore. */
+ *  too short for flow. Kf, k: bulk modulus and conductivity; options: of mpm/pore. */
 inline double scatter_of_pressure(double Kf, double k, const std::string &options)
 {
   const int n = 20;
@@ -134,8 +131,7 @@ inline double scatter_of_pressure(double Kf, double k, const std::string &option
 }
 
 /** Expects that the mass of the points of a column changes by the water that comes through its
- *  surface, whose volume the fix counts. least: this volume must be larger, regardless of its sign;
- *  0: not checked. */
+ *  surface, whose volume the fix counts. least: bound of its size; 0: not checked. */
 inline void expect_water_is_kept(const std::string &scene, int steps, double least)
 {
   Scene run(scene + load(10, LOAD, 0.01));
@@ -219,8 +215,7 @@ inline Consolidation consolidate(int n, const std::string &options, double top, 
 
 /** Variables of blocks(). */
 constexpr const char *OF_BLOCKS = "variable p atom 0.1*x\nvariable k atom 0.01*(1+y)\n";
-/** Input of two bodies of different soils and a dry one, which collide. more: words of fix
- *  mpm/pore. */
+/** Input of bodies of two soils and a dry one, which collide. more: words of fix mpm/pore. */
 inline std::string blocks(const std::string &more)
 {
   return colliding(

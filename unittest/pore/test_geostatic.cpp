@@ -4,8 +4,7 @@
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// The command mpm_geostatic: level ground at rest under its weight. Ground with pore water is in
-// test_pore.cpp.
+// The command mpm_geostatic: level ground at rest. With pore water: test_pore.cpp.
 
 #include "mpm_lammps.h"
 

@@ -175,8 +175,7 @@ PARAMETER_TEST(Relaxation, IsExact, std::string,
   }
 }
 
-// A bed of soil in a tank, with water above it, stays at rest: pressure of the water, weight of the
-// soil less buoyancy.
+// A bed of soil in a tank of water stays at rest: pressure, weight of the soil less buoyancy.
 PARAMETER_TEST(Still, StaysAtRest, std::string,
                Values("transfer apic", "transfer flip 1.0 scheme musl", "transfer aflip 1.0",
                       "transfer apic smooth 0.5", "shape cubic"))
@@ -237,8 +236,7 @@ std::string bed(int dim, double h, double height, const std::string &options, do
 }
 const double BUOYANT = (1.0 - POROSITY) * (GRAINS - WATER) * G;
 
-// level ground in water at rest, as mpm_geostatic finds it: what is left of the forces of both, and
-// the stress of soil
+// level ground in water, as mpm_geostatic finds it: what is left of forces, the stress of soil
 TEST(Geostatic, StaysAtRest)
 {
   const double dt = 2.0e-5;
@@ -295,8 +293,7 @@ TEST(Geostatic, RanksAndRestart)
 }
 
 // The standing wave of a sealed column: frequency and decay of equations for both velocities
-// (u-v-p), whose roots are those of data on saturated_modes: 4 ordinary differential equations,
-// which are solved here.
+// (u-v-p), whose roots are those of data on saturated_modes: 4 equations, solved here.
 struct Mode {
   double K, k;    ///< bulk modulus of water, hydraulic conductivity
   std::string options;
@@ -438,15 +435,14 @@ SERIAL_TEST(Consolidation, FollowsTerzaghi)
   }
 }
 
-// Water flows up through a bed of soil that lies on a sieve, driven by a force in a loop (a
-// periodic column): Darcy's flow, gradient of the pressure, effective stress, and the gradient at
-// which the bed is lifted. The force is uniform in the water, and the soil weighs so much less that
-// the difference is that of its weight under water. A body elsewhere, in contact with the soil if
-// it were here, changes nothing, nor do walls at the sides, which hold soil and water. In a stiff
-// bed, which the seepage does not make higher, what is left of the effective stress is right to 2 %
-// of itself with aflip: other transfers take a part of the head where the water changes its speed
-// at the ends of the bed. Stresses are means over cells, in which those of points vary as nodes do
-// not see.
+// Water flows up through a bed of soil that lies on a sieve, driven by a force in a periodic
+// column: Darcy's flow, gradient of the pressure, effective stress, and the gradient at which the
+// bed is lifted. The force is uniform in the water, and the soil weighs so much less that the
+// difference is that of its weight under water. A body elsewhere, in contact with the soil if it
+// were here, changes nothing, nor do walls at the sides, which hold soil and water. In a stiff bed,
+// what is left of the effective stress is right to 2 % of itself with aflip: other transfers take a
+// part of the head where the water changes its speed at the ends of the bed. Stresses are means
+// over cells, in which those of points vary as nodes do not see.
 struct Flow {
   double gradient;
   std::string options, with = "";
@@ -525,9 +521,8 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
                          "run 100000\nunfix end\n",
                          stiff ? 1.5 : 1.0));
 
-  // means over time: of the flux in all of the column, as what flows through it is the same
-  // everywhere; of the gradient of the pressure and of the vertical stress of the soil inside of
-  // the bed; of all forces on the soil
+  // means over time: of the flux in all of the column; of the gradient of the pressure and the
+  // vertical stress of the soil inside of the bed; of all forces on the soil
 
   double flux = 0.0, slope = 0.0, stress = 0.0, forces = 0.0;
   std::vector<double> of_cells(std::lround(0.3 / c.h), 0.0);
@@ -584,9 +579,8 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
   EXPECT_NEAR(measured("all forces on the soil", forces / weight), 0.0, 1.0e-3);
 }
 
-// Forces of drag by laws for spheres: what is left of a difference of velocities after a long time,
-// in a periodic box where a force drives the water through soil that is held, is what has just this
-// drag.
+// Forces of drag by laws for spheres: in a periodic box a force drives water through soil that is
+// held, and the difference of velocities after a long time has just this drag.
 SERIAL_TEST(Drag, OfSpheresIsThatOfTheLaw)
 {
   const double d = 0.01, mu = 1.0e-3, n = POROSITY;
@@ -612,8 +606,7 @@ SERIAL_TEST(Drag, OfSpheresIsThatOfTheLaw)
     }
 }
 
-// Soil with another porosity than that of the permeability; and the limit of the time step, by the
-// formula of the page
+// Soil of another porosity than that of the permeability; the time step by the page's formula
 SERIAL_TEST(Drag, OfDarcyDependsOnPorosity)
 {
   const Column c = Column::full(1.0e5, 1.0e6, "darcy 1.0e-9 0.5");
@@ -915,8 +908,7 @@ SERIAL_TEST(Units, OfForcesAndEnergy)
   }
 }
 
-// What limits the time step is named: the fastest of all points, here one of water that is
-// compressed.
+// The fastest of all points limits the time step and is named, here one of compressed water.
 TEST(TimeStep, IsThatOfTheFastestPoint)
 {
   for (const int fastest : {70, 84, 120}) {

@@ -176,8 +176,7 @@ double came_in(double degrees, double h, double origin, double bottom = 0.0)
   return run.fix("water")->compute_scalar() / (surfaces * 1e-6 * 2.0 / cos(slope) * run.time());
 }
 
-// The water of a flux is its area times that of the free surface, which was up to 9 % too small,
-// also with small cells
+// Water of a flux: times the area of the free surface, which was up to 9 % too small
 SERIAL_TEST(Surface, AreaOfAFlux)
 {
   for (const double origin : {0.0, 0.03, 0.07}) {
@@ -193,8 +192,7 @@ SERIAL_TEST(Surface, AreaOfAFlux)
   }
 }
 
-// Water through a face of the box is the flux times the area of the soil there, wherever nodes are:
-// up to 1.9 % were missing
+// Water through a face of the box: flux times area, wherever nodes are; 1.9 % were missing
 SERIAL_TEST(Surface, AreaOfAFace)
 {
   for (const char *shape : {"quadratic", "cubic"})
@@ -313,8 +311,7 @@ SERIAL_TEST(Energy, Wave)
   EXPECT_NEAR(measured("residual", run.compute_vector()[10] / before), 0.0, 1e-12);
 }
 
-// flow through a column under its weight, up and down: flux, effective stress, and no gain of
-// energy
+// flow through a column under its weight, up and down: flux, effective stress, no gain of energy
 SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
 {
   for (const double i : {0.5, 0.9, -0.5}) {
@@ -366,9 +363,8 @@ SERIAL_TEST(Walls, ThatSeparate)
   EXPECT_LT(measured("fastest", fastest), 0.002);
 }
 
-/** A column of 1 m with 10 cells above a floor, which a wall of this kind holds, under its weight;
- *  water has the pressure of rest and this gradient more, and leaves at the top. offset: of the
- *  floor from nodes, in cells. */
+/** A column of 1 m with 10 cells on a floor of this kind, under its weight; water has the pressure
+ *  of rest and this gradient, and leaves at the top. offset: of the floor from nodes, in cells. */
 std::string above_floor(const std::string &wall, double gradient, double offset,
                         const std::string &material, const std::string &axes)
 {
@@ -389,8 +385,7 @@ double mean_velocity(Scene &run, int d)
   return sum;
 }
 
-// friction of walls is that of grains: a saturated column slides on its floor as one of its
-// submerged weight
+// friction of walls is that of grains: a saturated column slides as one of its submerged weight
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
 {
   const double slower = 0.3 * 9.81 * 990.0 / 1990.0;
@@ -473,8 +468,7 @@ SERIAL_TEST(TimeStep, IsUndrained)
   EXPECT_NEAR(biot.stable_dt() / (0.1 / std::sqrt((MODULUS + 0.64 / storage) / 2002.0)), 1.0, 1e-6);
 }
 
-// units in which mass, energy, and pressure do not fit together: the period of a wave, and water at
-// rest
+// units in which mass, energy, pressure do not fit together: period of a wave, water at rest
 SERIAL_TEST(Units, Metal)
 {
   const double mvv2e = 1.0364269e-4, nktv2p = 1.6021765e6, h = 5.0;
@@ -507,8 +501,7 @@ SERIAL_TEST(Units, Metal)
               0.0, 1e-9);
 }
 
-// friction by the effective stress in these units and three dimensions, with a floor in a plane of
-// nodes or not
+// friction by effective stress in these units and in 3d, with a floor in a plane of nodes or not
 SERIAL_TEST(Units, FrictionInMetal)
 {
   for (const double origin : {0.0, 1.5}) {
@@ -615,8 +608,7 @@ TEST(Restart, BeforeTheFirstRun)
   }
 }
 
-// the time step knows from the first one on what flows through the surface and by a formula, and in
-// later runs what it was
+// the time step knows at once what flows through the surface and by a formula, also in later runs
 TEST(TimeStep, KnowsTheFlowAtOnce)
 {
   const auto scene = [](const std::string &law, const std::string &more, const char *fraction) {
@@ -643,8 +635,7 @@ TEST(TimeStep, KnowsTheFlowAtOnce)
   EXPECT_LT(ranks.difference(), 1e-11);
 }
 
-// a body without water has no part in it, and the point that limits the time step is one of the
-// soil
+// a body without water has no part in it, and a point of the soil limits the time step
 SERIAL_TEST(DryField, PaysNothing)
 {
   Scene run(
@@ -686,8 +677,7 @@ std::string ground(int n, const std::string &water, const std::string &material,
                   "fix g all gravity 9.81 vector 0 -1 0\nfix water");
 }
 
-// level ground of 20 cells is at rest on nodes wherever these are, with stresses that are the
-// weight above
+// level ground of 20 cells is at rest wherever nodes are, with stresses of the weight above
 SERIAL_TEST(Geostatic, StaysAtRest)
 {
   const int n = 20;
@@ -722,8 +712,7 @@ SERIAL_TEST(Geostatic, StaysAtRest)
     }
 }
 
-// laws for soils keep the elastic strain: sand without cohesion, and clay with a modulus that
-// depends on the pressure
+// laws for soils keep elastic strain: sand without cohesion, clay whose modulus follows pressure
 SERIAL_TEST(Geostatic, Soils)
 {
   for (const char *law : {"mohr/coulomb 1e7 0.3 35 0", "drucker/prager 1e7 0.3 35",
@@ -746,8 +735,7 @@ SERIAL_TEST(Geostatic, Soils)
   expect_error(loose, "K0 within its yield surface");
 }
 
-// two soils, grains that are not rigid, a table below the surface, weight to the other side, and
-// three dimensions
+// two soils, soft grains, a table below the surface, weight to the other side, and 3d
 SERIAL_TEST(Geostatic, LayersInThreeDimensions)
 {
   Scene run(space("si", "p p f", "0 0.4 0 0.4 0 1.15", 2, 0.03) +

@@ -68,8 +68,7 @@ struct At {
 
 // Mandel: a strip between rigid smooth plates which are pressed together, drained at its sides. The
 // pressure in its middle rises first, as the sides become stiffer there. A quarter of the strip;
-// the plate has no mass, but a damper: its velocity is the force that is missing over the
-// resistance of the damper
+// the plate is a damper: its velocity is the missing force over the resistance
 struct Strip {
   double nu, peak;
   std::vector<At> decay;
@@ -115,10 +114,9 @@ PARAMETER_TEST(
   EXPECT_NEAR(measured("force on the plate", run.fix_vector("plate", 2)[1] / F), 1.0, 0.002);
 }
 
-// Cryer: a sphere under pressure from all sides, drained at its curved surface. Less the state in
-// which all pressures are the same, and nothing flows or deforms, this is a sphere without load
-// around which the pressure of the water is lowered: first it rises in the middle. An eighth of the
-// sphere
+// Cryer: a sphere under pressure from all sides, drained at its curved surface. Less the state of
+// one pressure everywhere, in which nothing flows, this is a sphere without load around which the
+// pressure of the water is lowered: first it rises in the middle. An eighth of the sphere
 PARAMETER_TEST(Cryer, PressureRisesFirst, const char *, Values("", " every auto"))
 {
   LONG_AFTER(1);
@@ -161,9 +159,8 @@ struct Large {
 
 /** Settlement and pressure at the base by finite volumes, at times in ascending order: d(l)/dt + (l
  *  n/K) dp/dt = d/dX(k/l dp/dX) with the stretch l, the volume l n = l - (1 - n0) of water with the
- *  bulk modulus K (infinite with water = 0), and p = q - stress. Loaded without time for flow at
- *  first, or with a load that grows in a time, ramp, as that of load(), and times from the middle
- *  of this on. */
+ *  bulk modulus K (infinite with water = 0), and p = q - stress. Loaded without time for flow, or
+ *  in a time, ramp, as by load(), and times from its middle on. */
 std::vector<std::array<double, 3>> finite_volumes(const Large &column, double water,
                                                   double ramp = 0.0)
 {
@@ -267,10 +264,9 @@ void PrintTo(const Large &column, std::ostream *out)
 // Consolidation by loads of 0.2, 0.5, and 1 modulus of the soil, against finite volumes with the
 // same water, and load, which grows in a short time: both shift what comes late, where the pressure
 // at the base is less than one percent of the load, by up to 1 %, and so does the inertia of soil
-// of more weight. Rows of the table of the benchmark, with water that does not give way and a load
-// at once, check the volumes. The load is on the two upper rows of points in such parts that its
-// place is the surface. The permeability of Kozeny and Carman falls to 1/10 within a cell of the
-// surface
+// of more weight. Rows of the benchmark's table, stiff water and a load at once, check the volumes.
+// The load is on the two upper rows of points in such parts that its place is the surface. The
+// permeability of Kozeny and Carman falls to 1/10 within a cell of the surface
 PARAMETER_TEST(
     LargeStrain, Consolidates, Large,
     Values(
@@ -358,8 +354,7 @@ PARAMETER_TEST(
     }
     const auto name = strprintf("T %g, over the reference: ", at[0]);
     EXPECT_NEAR(measured(name + "settlement", (1.0 - volume * n / 4.0) / at[1]), 1.0, 0.02);
-    // of the last part of the load, quadratic functions do not tell where the surface is between
-    // nodes
+    // of the last part of the load, quadratic functions do not tell where between nodes it is
     const double base = water.mean(0.0, 0.5 / n) / soil.q;
     measured(name + "pressure at the base", base / at[2]);
     EXPECT_NEAR(base, at[2], 0.02 * std::max(at[2], soil.shape == "cubic" ? 0.0 : 0.004));

@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 300
 
-// Soil with pore water in contact with other bodies (fix mpm/contact): grains and water share what
-// is between them.
+// Soil with pore water in contact (fix mpm/contact): grains and water share what is between bodies.
 
 #include "pore/pore_testing.h"
 
@@ -15,9 +14,8 @@ using namespace MPM_TEST;
 constexpr double SUBMERGED = 990.0 / 1990.0;    // weight in water over that of soil and water
 
 /** A layer of saturated soil, 1 m high with 10 cells, periodic along x, in a box from y = -0.4 on;
- *  the water has the pressure of rest across the layer, and seeps along it. slope: tangent of the
- *  angle to which gravity is inclined; offset: of y = 0 from nodes, in cells; dim: 2, or 3, where y
- *  is up, too. */
+ *  water has the pressure of rest across the layer, and seeps along it. slope: tangent of the angle
+ *  of gravity; offset: of y = 0 from nodes, in cells; dim: 2, or 3, where y is up, too. */
 std::string layer(double slope, double offset, int dim)
 {
   const double cosine = 1.0 / std::sqrt(1.0 + slope * slope);
@@ -82,8 +80,7 @@ double friction(Scene &run, double slope, double coefficient)
   return held / (9.81 * cosine * coefficient * (1990.0 - 1000.0 * (high - low)) / 1990.0);
 }
 
-// an infinite slope with seepage along it: friction is that of the submerged weight, not half of
-// the total one
+// an infinite slope with seepage: friction is that of the submerged weight, not half of the total
 SERIAL_TEST(Contact, FrictionIsThatOfGrains)
 {
   for (const double offset : {0.0, 0.3}) {
@@ -100,8 +97,7 @@ SERIAL_TEST(Contact, FrictionIsThatOfGrains)
   EXPECT_NEAR(measured("3d", friction(run, 0.35, 0.5)), 1.0, 0.005);
 }
 
-// below the angle of which the tangent is friction times the share of the submerged weight the
-// layer is held
+// the layer is held below the angle with tan = friction times the share of submerged weight
 SERIAL_TEST(Contact, SlopeHolds)
 {
   Scene run(on_body("coulomb 0.5", 0.9 * 0.5 * SUBMERGED, 0.0));

@@ -11,8 +11,7 @@
 
 using namespace MPM_TEST;
 
-// Terzaghi's column at T = 0.2, drained at a face of the box or at a free surface, with flows far
-// above the explicit limit, too
+// Terzaghi's column at T = 0.2, drained at a face or at a free surface, also far above the limit
 SERIAL_TEST(Consolidation, Terzaghi)
 {
   for (const double Kf : {2.2e8, 2.2e9})
@@ -115,8 +114,7 @@ TEST(Auto, WaitsForTheFlow)
 }
 
 // Without every, water waits where it can: not while a pressure changes within thin layers, where
-// it flows as with every 1, to the last bit, and not with free surfaces or what varies from step to
-// step
+// it flows as with every 1, to the last bit, not with free surfaces or what varies
 TEST(Default, WaitsWhereItCan)
 {
   const auto pores = [](double k, const std::string &more, int steps) {
@@ -137,8 +135,7 @@ TEST(Default, WaitsWhereItCan)
     EXPECT_EQ(pores(1e-5, even + in_each, 40), pores(1e-5, even + in_each + "every 1", 40));
 }
 
-// flows beyond one explicit limit through a free surface are told once; not shorter ones, nor those
-// through a face, nor with auto
+// flows beyond the limit through a free surface are told once; not others, nor those with auto
 SERIAL_TEST(Told, LongFlowThroughAFreeSurface)
 {
   const auto told = [](const char *k, const char *options) {
@@ -187,8 +184,7 @@ SERIAL_TEST(LargeStrain, Consolidation)
               0.02);
 }
 
-// between two flows water stays where it is, and what compresses a point raises its pressure at
-// once
+// between flows water stays where it is, and what compresses a point raises its pressure at once
 TEST(Water, WaitsForTheFlow)
 {
   Scene run(column(10, "2.2e8 1000 9810 soil m 0.4 constant 1e-6 ylo flux 1e-6 every 4", SOIL) +
@@ -239,9 +235,8 @@ TEST(Restart, Continues)
     expect_continues(blocks(std::string("free pressure 0 initial v_p every ") + every), OF_BLOCKS);
 }
 
-// What follows on a file that was written between two flows may have other conditions, with which
-// water flows in each step, or be implicit: points have the pressure that the motion has made since
-// the last flow
+// After a file from between two flows water may flow in each step, or implicitly: points have the
+// pressure that the motion has made since the last flow
 TEST(Restart, GoesOnWithOtherConditions)
 {
   const auto fixes = [](const std::string &more) {

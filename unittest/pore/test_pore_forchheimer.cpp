@@ -52,8 +52,7 @@ SERIAL_TEST(Steady, IsTheRoot)
       }
 }
 
-// a soil that can dry and touches no face changes nothing; at the sides of a body a part of the
-// area is missing
+// a soil that can dry and touches no face changes nothing; the sides of a body lack some area
 SERIAL_TEST(Steady, BesideSoilThatDries)
 {
   for (const double b : {1e8, 1e10}) {

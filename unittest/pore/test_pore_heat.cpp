@@ -45,8 +45,7 @@ double pressure(const std::string &scene)
   return sum / n / warmth;
 }
 
-// no room to expand: water and grains press on each other; a body that is free to expand: what
-// water takes more than pores do
+// no room to expand: water and grains press on each other; free to expand: water leaves the pores
 SERIAL_TEST(Undrained, PressureByHeat)
 {
   for (const char *formulation : {"", " formulation u-v-p"}) {
@@ -82,8 +81,7 @@ TEST(Heated, RanksAndRestart)
   expect_continues(scene, variables);
 }
 
-// a wall without water between two soils, or one that does not conduct: nodes of one that is thin
-// belong to both
+// a dry or tight wall between two soils: nodes of a thin one belong to both
 TEST(Wall, LeaksAreTold)
 {
   for (const bool heat : {false, true})

@@ -46,8 +46,7 @@ double flow(Scene &run, double dt, double end)
   return flows[0];
 }
 
-// layers of a tenth and a hundredth of the permeability one behind the other: the resistance is
-// that of all
+// layers of a tenth and a hundredth of the permeability in a row: the resistance of all
 SERIAL_TEST(Layers, InSeries)
 {
   for (const double most : {1.0, 10.0})
@@ -141,8 +140,7 @@ SERIAL_TEST(Layers, OfAFormula)
   EXPECT_NEAR(measured("flow", flow(run, dt, 15.0) * n / 4.0 * 5.5), 1.0, 0.01);
   Scene closed(layered(with("(x<0.5)")));
   closed.commands(strprintf("timestep %.17g\nrun 1000\n", 0.1 * dt));
-  // points next to it take the pressure of nodes at a fifth of the rate in which waves, with a
-  // speed of 1e-6, cross a cell
+  // points next to it take the pressure of nodes at a fifth of the rate of waves of speed 1e-6
   EXPECT_NEAR(measured("closed", closed.fix_vector("water", 7)[0] * n / 4.0), 0.0, 0.2 * 1e-6);
 }
 
@@ -174,8 +172,7 @@ SERIAL_TEST(Plate, EndsOffTheFaces)
     }
 }
 
-// a checkerboard of permeabilities 1 and 10 has the mean root of 10 (J. B. Keller, J. Math. Phys. 5
-// (1964) 548)
+// a checkerboard of 1 and 10 has the mean root of 10 (J. B. Keller, J. Math. Phys. 5 (1964) 548)
 SERIAL_TEST(Layers, Checkerboard)
 {
   const int n = 16;
@@ -215,8 +212,7 @@ SERIAL_TEST(Layers, UnderWeight)
   }
 }
 
-// water of a closed body is kept where soil with layers moves across the lattice, on one rank and
-// on others
+// water of a closed body is kept where layered soil moves across the lattice, on any ranks
 TEST(Ranks, Agree)
 {
   const std::string scene =
@@ -282,8 +278,7 @@ TEST(Unused, ChangesNothing)
   for (int i = 0; i < run.n(); i++) ASSERT_EQ(p[i], q[i]);
 }
 
-// the time step is that of points that store little next to soil that lets much through, and the
-// flow is stable with it
+// points that store little next to permeable soil limit the time step, and the flow is stable
 SERIAL_TEST(TimeStep, IsThatOfTheInterface)
 {
   const auto layers = [](const char *slow) {

@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 400
 
-// Fix mpm/pore with formulation u-v-p: pore water with inertia of its own in the points of the
-// soil.
+// Fix mpm/pore with formulation u-v-p: pore water with inertia of its own in the points.
 
 #include "pore/pore_mode_testing.h"
 
@@ -14,8 +13,7 @@ using namespace MPM_TEST;
 
 const std::string MOVES = "formulation u-v-p ";
 
-/** Frequency and decay of the fast mode in a signal that has a slow one, of a known root, too: the
- *  best fit of both. */
+/** Frequency and decay of the fast mode in a signal with a slow one of known root: a best fit. */
 std::array<double, 2> fast_mode(const std::vector<double> &t, const std::vector<double> &y,
                                 std::array<double, 2> fast, const std::array<double, 2> &slow)
 {
@@ -69,8 +67,7 @@ std::array<double, 2> fast_mode(const std::vector<double> &t, const std::vector<
   return fast;
 }
 
-// The roots of u-v-p for the fast wave of a sealed column, as tabulated; the slow motion has its
-// own ones
+// Tabulated roots of u-v-p for the fast wave of a sealed column; the slow motion has its own
 struct Roots {
   Mode mode;
   std::array<double, 2> fast, slow;    // frequency, decay
@@ -277,8 +274,7 @@ SERIAL_TEST(Momentum, IsKept)
   EXPECT_LT(measured("change", most), 1e-11);
 }
 
-// the time step is that of a wave in which water and soil move without drag, and it is stable just
-// below
+// the time step is that of a wave of water and soil without drag, and it is stable just below
 SERIAL_TEST(TimeStep, IsThatOfTheFastWave)
 {
   const double Kf = 2.2e8, E = MODULUS, S = N / Kf, rho = 1990.0, rhof = 1000.0;

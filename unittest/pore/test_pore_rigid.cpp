@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 300
 
-// Rigid bodies (fix mpm/rigid) on soil with pore water: they bear the total stress, of grains and
-// water.
+// Rigid bodies (fix mpm/rigid) on soil with pore water: they bear the total stress.
 
 #include "mesh/stl_testing.h"
 #include "pore/pore_testing.h"
@@ -40,8 +39,7 @@ double share_of_water(double K)
   return K / 0.4 / (MODULUS + K / 0.4);
 }
 
-// undrained compression: the body bears the whole load, of which the water has what its stiffness
-// is in that of both
+// undrained compression: the body bears the load; water has its part of the stiffness
 SERIAL_TEST(Plate, BearsTheTotalStress)
 {
   const ScratchFile file("plate.stl", text_of(plate()));
@@ -99,8 +97,7 @@ double friction(const std::string &water, double offset)
   return along / down / 0.3;
 }
 
-// friction is that of grains: of the effective stress where the surface is closed, of all where it
-// is open to air
+// friction of grains: by effective stress where the surface is closed, by all where it is open
 SERIAL_TEST(Plate, FrictionIsThatOfGrains)
 {
   for (const double K : {2.2e7, 2.2e8})

@@ -12,8 +12,7 @@
 
 using namespace MPM_TEST;
 
-/** A block between a floor and a lid that comes down with this speed; its grains have 0.6 of its
- *  volume. */
+/** A block, 0.6 of it grains, between a floor and a lid that comes down with this speed. */
 std::string pressed(const std::string &law, double speed)
 {
   return plane("si", "p f", "0 0.4 0 1", 1, 0.03) + "create_points 1 box spacing 0.05\n" +
@@ -23,8 +22,7 @@ std::string pressed(const std::string &law, double speed)
       "fix water all mpm/pore 2.2e6 1000 9810 soil m 0.4 " + law + "\nfix dt all mpm/dt 0.3\n";
 }
 
-// a warning tells of it once; nothing negative and no NaN comes out, and water that cannot leave is
-// kept
+// one warning tells of it; nothing negative and no NaN comes out, and water is kept
 TEST(Shut, IsTold)
 {
   for (const char *law :

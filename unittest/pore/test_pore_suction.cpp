@@ -52,8 +52,7 @@ void run_to(Scene &run, double end, double share = 0.5)
   run.commands(strprintf("fix dt all mpm/dt %g until %.17g\nrun 10000000\n", share, end));
 }
 
-/** Volume of water of all points by their saturation and porosity, at the density that it has
- *  without pressure. */
+/** Volume of water of all points by saturation and porosity, at its density without pressure. */
 double water_in_pores(Scene &run, double K)
 {
   const auto S = values(run, "saturation"), n = values(run, "porosity"), p = values(run, "pore");
@@ -133,8 +132,7 @@ SERIAL_TEST(Retention, Functions)
   EXPECT_NEAR(state.relative, std::sqrt(s) * std::pow(1.0 - std::sqrt(1.0 - s * s), 2), 1e-14);
 }
 
-// Infiltration above a water table, Gardner's soil: the steady profile of 0.1 K stays, and becomes
-// that of 0.9 K
+// Infiltration above a water table (Gardner): the steady profile of 0.1 K stays; then that of 0.9 K
 SERIAL_TEST(Infiltration, SrivastavaAndYeh)
 {
   const double alpha = 4.0, K = 0.1, range = 0.34;
@@ -280,8 +278,7 @@ SERIAL_TEST(Geostatic, SuctionAboveTheTable)
   EXPECT_LT(measured("with less suction, force over weight", fall(dry, dt)), 0.05);
 }
 
-// also where the suction of water at rest changes the saturation by orders of magnitude within a
-// cell
+// also where suction of water at rest changes the saturation by orders of magnitude in a cell
 SERIAL_TEST(Geostatic, CapillaryFringeWithinACell)
 {
   Scene run(column(10,
@@ -291,9 +288,8 @@ SERIAL_TEST(Geostatic, CapillaryFringeWithinACell)
   EXPECT_LT(measured("velocity", fall(run, 200 * 4e-5)), 1e-9);
 }
 
-// friction of walls is that of grains: a block slides by its weight without what its water bears at
-// the floor, where pores are full with the saturation Ss, partly full, or full below a water table
-// in the block
+// friction of walls is that of grains: a block slides by its weight less what water bears at the
+// floor, in pores that are full with the saturation Ss, partly full, or below a water table
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
 {
   LONG_CASE();
@@ -340,8 +336,7 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
     }
 }
 
-// soil whose pores stay full is that without retention, to round-off: the compiler contracts the
-// sums of the two differently
+// soil whose pores stay full is that without retention, to round-off as compilers contract sums
 SERIAL_TEST(FullPores, AreAsWithoutRetention)
 {
   const auto scene = [](const char *dries) {
@@ -361,8 +356,7 @@ SERIAL_TEST(FullPores, AreAsWithoutRetention)
 }
 
 // Rain of three times the permeability on dry soil: first all of it goes in, then what full pores
-// let through. No water comes in through a face with air outside, and what has come in leaves there
-// when it is there
+// let through. No water comes in through a face with air outside, but it leaves there
 SERIAL_TEST(Surface, RainAndSeepage)
 {
   const double K = 0.1;
@@ -388,8 +382,7 @@ SERIAL_TEST(Surface, RainAndSeepage)
   }
 }
 
-/** A surface that stays full takes water into dry soil, from -10 m: 1 m with n cells. K: of the
- *  water. */
+/** A full surface takes water into dry soil, from -10 m: 1 m with n cells. K: of the water. */
 std::string absorbs(int n, double K, double end)
 {
   const double h = 1.0 / n;
@@ -407,8 +400,7 @@ std::string absorbs(int n, double K, double end)
 }
 
 // Absorption into dry soil, whose water grows with the root of the time: 0.0386 m after 0.3 s,
-// 0.0585 and 0.0494 with 10 and 20 finite volumes. The front does not hold it back, also where the
-// water is stiff
+// 0.0585 and 0.0494 with 10 and 20 finite volumes. Also where water is stiff
 SERIAL_TEST(Surface, FillsDrySoil)
 {
   LONG_CASE();
@@ -487,8 +479,7 @@ TEST(Momentum, OfABodyThatMoves)
   for (int d = 1; d < 3; d++) EXPECT_NEAR(measured("momentum", after[d] / before[d]), 1.0, 1e-3);
 }
 
-// the ledger closes with suction in it, and the time step is that of the waves in soil with as much
-// water
+// the ledger closes with suction, and the time step is that of waves in soil with as much water
 SERIAL_TEST(Ledger, Closes)
 {
   Scene run(column(20, std::string(SAND) + DRIES + "geostatic 0.5 0.4 yhi rain 1e-3",

@@ -4,8 +4,7 @@
 // labels: physics input
 // timeout: 300
 
-// Fix mpm/pore: what it tells of input that is likely to be wrong, and what it must not take for
-// wrong.
+// Fix mpm/pore: what it tells of input that is likely to be wrong, and what it must not.
 
 #include "pore/pore_testing.h"
 
@@ -42,8 +41,7 @@ SERIAL_TEST(Energy, OfWaterThatLeaves)
   }
 }
 
-// With every K points take the same steps, as the load is constant. The surface was looked for
-// before there were means of forces
+// With every K points take the same steps. The surface was looked for before there were mean forces
 SERIAL_TEST(Every, IsTheSame)
 {
   double mean[2], out[2];
@@ -59,8 +57,7 @@ SERIAL_TEST(Every, IsTheSame)
   EXPECT_NEAR(measured("water that left", out[1] / out[0]), 1.0, 1e-9);
 }
 
-// the ID of a material without points, and a density that grains cannot have: the ground would be
-// dry, or too light
+// a material without points, or a density that grains cannot have: ground dry, or too light
 SERIAL_TEST(Soils, WithoutPointsOrTooLightAreTold)
 {
   const auto told = [](const char *soil, const char *density, const char *weight,
@@ -138,9 +135,8 @@ SERIAL_TEST(Relax, ThatSmoothsIsTold)
 }
 
 // u-p leaves out the acceleration of the water: fast waves, and gravel under a load that comes at
-// once, need u-v-p. Slow flow after such a load does not, though it begins with waves, nor waves
-// that water in fine soil goes with, nor ground at rest, where flow and accelerations are those of
-// round-off
+// once, need u-v-p. Slow flow after such a load does not, nor waves that water in fine soil goes
+// with, nor ground at rest
 SERIAL_TEST(Inertia, ThatCountsIsTold)
 {
   const auto told = [](const std::string &scene, const char *more) {

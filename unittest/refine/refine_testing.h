@@ -19,9 +19,8 @@ inline double origin(const std::string &shape, int level)
   return at;
 }
 
-/** Input of fields F0, F1, ... of points of types 1, 2, ..., each with half the spacing of the one
- *  before. regions: of each field, as in the region command. Points fill it outside of the region
- *  of the next. */
+/** Input of fields F0, F1, ... of points of types 1, 2, ..., each with half the spacing of the
+ *  last. regions: of each field, as in region. Points fill it outside of the region of the next. */
 inline std::string lattices(int dim, const std::string &shape, const std::string &options,
                             const std::vector<std::string> &regions)
 {

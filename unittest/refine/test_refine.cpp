@@ -48,8 +48,7 @@ PARAMETER_TEST(Velocity, StaysLinear, Patch,
 }
 
 // Creeping flow: a cylinder of radius 1 in the middle of one of radius 4, half of it, that moves
-// feels a drag of 4 pi mu U/(ln 4 - 15/17) per length. Small cells around it find this better than
-// large cells everywhere
+// feels a drag of 4 pi mu U/(ln 4 - 15/17) per length. Small cells around it find this better
 SERIAL_TEST(Flow, AroundACylinder)
 {
   const double exact = 4.0 * PI / (log(4.0) - 15.0 / 17.0), U = 1e-3;
@@ -83,8 +82,7 @@ SERIAL_TEST(Flow, AroundACylinder)
   EXPECT_LT(std::fabs(error[1]), 0.5 * std::fabs(error[0]));
 }
 
-// Uniform pressure in a box full of points gives no force on any node with linear functions, and
-// next to none with others
+// Uniform pressure in a full box: no force on any node with linear functions, little with others
 PARAMETER_TEST(Pressure, IsInBalance, Patch,
                Values(Patch{2, 2, "linear"}, Patch{2, 3, "quadratic"}, Patch{3, 2, "quadratic"},
                       Patch{2, 2, "cubic"}))
@@ -101,15 +99,13 @@ PARAMETER_TEST(Pressure, IsInBalance, Patch,
   double worst = 0.0;
   for (const auto &point : run.gather())
     for (int d = 0; d < 3; d++) worst = std::max(worst, std::fabs(point.v[d]));
-  // products of a linear and a quadratic function along two axes have another integral by coarse
-  // points than by fine ones
+  // products of linear and quadratic functions have another integral by coarse points than by fine
   EXPECT_LT(measured("velocity over that of pressure on a cell", worst / 0.001),
             p.shape == std::string("linear") ? 1e-12 : 1e-2);
 }
 
 // The finest points touch the coarsest ones, so that nodes between are tied to tied ones: linear
-// velocities stay, also by their change (aflip), which takes the old velocities of tied nodes, and
-// uniform pressure gives no force
+// velocities stay, also by their change (aflip), and uniform pressure gives no force
 SERIAL_TEST(Skip, ALatticeBetweenIsLeftOut)
 {
   const std::vector<std::string> regions = {"block 0 12 0 11 INF INF", "block 3 10 3 9 INF INF",
@@ -143,8 +139,7 @@ SERIAL_TEST(Skip, ALatticeBetweenIsLeftOut)
   EXPECT_LT(measured("velocity over that of pressure on a cell", worst / 0.001), 1e-12);
 }
 
-// A spinning body whose finer part crosses cells and periodic faces: momentum to round-off, energy
-// as on one lattice
+// A spinning body, its finer part crosses cells and faces: momentum to round-off, energy as on one
 SERIAL_TEST(Momentum, OfABodyThatSpins)
 {
   Scene run(plane("lj", "p p", "0 16 0 16", 2, 0.3) +
@@ -241,8 +236,7 @@ SERIAL_TEST(Wave, IsHardlyReflected)
   }
 }
 
-// Around an axis of symmetry velocities that are linear stay so, with the rim of the finer part
-// everywhere but on the axis
+// Around an axis linear velocities stay, with the rim of the finer part everywhere but on the axis
 SERIAL_TEST(Axisymmetric, VelocityStaysLinear)
 {
   for (const std::string shape : {"linear", "quadratic", "cubic"}) {
@@ -265,8 +259,7 @@ SERIAL_TEST(Axisymmetric, VelocityStaysLinear)
   }
 }
 
-/** Lattices of a body of revolution: one with the spacing h, or, with a plane where they meet, h on
- *  one side and h/2 on the other. */
+/** Lattices of a body of revolution: of spacing h, or, with a plane where they meet, h and h/2. */
 std::string rings(double h, const std::string &options, double r0, double r1, double meet,
                   bool fine_inside)
 {
@@ -292,8 +285,7 @@ struct Tube {
       hoop;    // error in the mean, at the bore, and of the hoop stress in the ring next to it
 };
 
-/** A thick-walled cylinder of radii 1 and 2 in plane strain under pressure in the bore, against
- *  Lame's solution: at rest. */
+/** A cylinder of radii 1 and 2 in plane strain under pressure in the bore (Lame), at rest. */
 Tube tube(double h, double meet, const std::string &options)
 {
   const double p = 1e-5, E = 1.0, nu = 0.3;
@@ -352,8 +344,7 @@ TEST(Rim, CracksAreTold)
   }
 }
 
-// Lame's cylinder under pressure: with a finer ring around the bore it is nearly as right as if all
-// of it were fine
+// Lame's cylinder: with a finer ring around the bore it is nearly as right as if all were fine
 SERIAL_TEST(Axisymmetric, TubeUnderPressure)
 {
   for (const std::string options : {"frame total", "stress gradient"}) {

@@ -4,8 +4,7 @@
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Fix mpm/contact of bodies that have lattices of several spacings (fix mpm/refine): one fix
-// mpm/contact for each lattice.
+// Bodies that have lattices of several spacings (fix mpm/refine): a fix mpm/contact for each.
 
 #include "mpm_lammps.h"
 
@@ -17,8 +16,7 @@ struct Part {    // what a body has on the lattice of a level: spacing 1, 1/2, .
   std::string region;    // empty: no points
 };
 
-/** Fields A0, A1, B0, ... and groups of the same names, united in bodies; points after all
- *  fixes. */
+/** Fields A0, A1, B0, ... and groups of these names, united in bodies; points after all fixes. */
 std::string fields(int dim, const std::vector<Part> &parts, const std::string &options)
 {
   std::string head, points;
@@ -142,8 +140,7 @@ SERIAL_TEST(Collision, IsThatOnOneLattice)
       const auto after = motion(run, parts, true), one = motion(run, parts, false);
       const std::string name = kind + " " + options;
       EXPECT_NEAR(measured(name + ": momentum", after.p / before.p), 1.0, 1e-12);
-      // a point of the finer lattice between tied nodes has an affine part of these: not to
-      // round-off
+      // a fine point between tied nodes has an affine part of these: not to round-off
       EXPECT_NEAR(measured("  angular momentum", after.angular / before.angular), 1.0, 0.01)
           << name;
       measured("  momentum of B", one.p);
@@ -159,8 +156,7 @@ SERIAL_TEST(Collision, IsThatOnOneLattice)
   }
 }
 
-// They touch when their surfaces do, to a hundredth of a cell, though both have other functions
-// from when they come near
+// They touch when their surfaces do, to a hundredth of a cell, though functions change before
 SERIAL_TEST(Collision, BeginsWhereTheyTouch)
 {
   for (const std::string kind : {"jump of both", "jumps apart", "jump at the interface"}) {
@@ -253,8 +249,7 @@ SERIAL_TEST(Rest, OnEachOther)
   }
 }
 
-// All lattices of a body have one form of the stress by default, also where one of them alone
-// touches the other body
+// All lattices of a body have one form of stress by default, also where one alone is in touch
 SERIAL_TEST(Rest, OneFormOfTheStress)
 {
   const auto lines = [](const std::string &scene) {
@@ -271,8 +266,7 @@ SERIAL_TEST(Rest, OneFormOfTheStress)
             3u);
 }
 
-// It slides on the other one with friction: the force is the coefficient of friction times its
-// weight
+// It slides on the other one: the force is the coefficient of friction times its weight
 SERIAL_TEST(Slide, HasTheFrictionOfTheWeight)
 {
   LONG_CASE();

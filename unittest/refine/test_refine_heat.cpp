@@ -25,8 +25,7 @@ struct Lattices {
 
 // Between faces with two temperatures, the temperature of a body at rest is linear in space, and
 // heat that flows is that of the whole section: to round-off with linear functions. With others,
-// products of functions along two axes have another integral by coarse points than by fine ones,
-// next to edges of the finer part
+// integrals by coarse points differ next to edges of the finer part
 PARAMETER_TEST(Profile, IsLinear, Lattices,
                Values(Lattices{2, 2, "linear", ""}, Lattices{2, 3, "linear", "frame total"},
                       Lattices{3, 2, "linear", ""}, Lattices{2, 2, "quadratic", ""},
@@ -58,8 +57,7 @@ PARAMETER_TEST(Profile, IsLinear, Lattices,
               linear ? 1e-12 : 3e-3);
 }
 
-// A bar without heat through its ends, with a finer middle or a finer end: order 2, and not worse
-// than on the coarse lattice alone
+// A bar without heat through its ends, with a finer part: order 2, no worse than on the coarse one
 SERIAL_TEST(Bar, CosineDecays)
 {
   for (const std::string shape : {"linear", "quadratic", "cubic"})

@@ -99,9 +99,8 @@ TEST(Deletion, IsOff)
   EXPECT_GT(failed, 8);
 }
 
-// a plate that breaks, and whose heat of fracture makes it expand: all of it is in the temperature
-// and in the internal energy, the ledger closes, and laws make no more errors than without that
-// heat
+// a plate that breaks, and expands by the heat of fracture: all of it is in temperature and
+// internal energy, the ledger closes, and laws make no more errors than without that heat
 TEST(Heat, OfFractureIsInTheInternalEnergy)
 {
   double laws[2];

@@ -337,9 +337,8 @@ TEST(LightNodes, KeepEnergyWithTheCuresForLocking)
   }
 }
 
-/** In the total frame the limit at nodes of next to no mass is that of the warning, if they are
- *  there: the bar is moved by 1/4 h + shift, a layer of points is at the distance shift from the
- *  faces of empty cells. */
+/** In the total frame the limit at nodes of next to no mass is that of the warning: the bar is
+ *  moved by 1/4 h + shift, a layer of points is at shift from empty cells. */
 TEST(TotalLightNodes, LimitIsThatOfTheWarning)
 {
   const double mistake =
@@ -445,8 +444,7 @@ TEST(AdaptiveTimeStep, FollowsWithinOneStep)
   EXPECT_LT(run.lmp->update->dt, 0.02 * before);
 }
 
-// A pressure beyond what a law bears makes points vanish, which the end of the run tells; not where
-// one becomes stiff
+// Pressure beyond what a law bears makes points vanish, which is told; not where it becomes stiff
 SERIAL_TEST(Told, PointsThatVanish)
 {
   const auto told = [](const std::string &law) {

@@ -5,10 +5,9 @@
 // mpi: 2
 // timeout: 300
 
-// Choices of all kinds together: options of fix mpm, walls, bodies, laws, and commands between two
-// runs. Each pair of them is refused with what to do instead, or is in a scene with some others
-// that has the same result on one rank and on two, and after a restart file in the middle of the
-// run.
+// Choices of all kinds: options of fix mpm, walls, bodies, laws, and commands between two runs.
+// Each pair of them is refused with what to do instead, or is in a scene with some others that has
+// the same result on one rank and on two, and after a restart file in the middle of the run.
 
 #include "mesh/stl_testing.h"
 
@@ -173,8 +172,7 @@ std::string lines(const Chosen &chosen, Place place)
   return text;
 }
 
-/** The scene with some choices: what comes before the first run, after a restart file, and between
- *  two runs. */
+/** A scene with choices: what comes before the first run, after a restart, and between two runs. */
 struct Combination {
   std::string scene, again, between;
 
@@ -300,8 +298,7 @@ std::string box_mesh(int dim)
       "$EndNodes\n$Elements\n" + std::to_string(nelement) + "\n" + elements + "$EndElements\n";
 }
 
-/** Write scene number k as an input for bench/same_bits.py: the whole run, and again from a restart
- *  file in the middle. */
+/** Write scene k as an input for bench/same_bits.py: the whole run, and again from its middle. */
 void write_scene(const std::string &folder, int dim, int k, const Chosen &chosen)
 {
   const std::string mesh = strprintf("box%d.msh", dim), stl = "box.stl";

@@ -170,12 +170,11 @@ static Vibration vibrate(const std::string &options, int cells, int ppc, bool wa
           measured(name + "E/E0", (run.sums().kinetic + run.stored_energy()) / start)};
 }
 
-/** The same bar in a code of its own, one-dimensional and linear, without the package: points stay
- *  where they are, nodes in rows, from -25 to 25 instead of a wall. Splines of the order, usl or
- *  musl; transfers flip 1.0; apic with C = B/D and the force of the same moment, but for order 1;
- *  tpic with the gradient of the functions in both. mode: of vibration, until: the end. Period, and
- *  energy at the end, of the points' velocities and strains, over those of the continuum and of the
- *  start. */
+/** The same bar in a code of its own, one-dimensional and linear: points stay where they are, nodes
+ *  in rows, from -25 to 25 instead of a wall. Splines of the order, usl or musl; transfers flip
+ *  1.0; apic with C = B/D and the force of the same moment, but for order 1; tpic with the gradient
+ *  of the functions in both. mode: of vibration, until: the end. Period, and energy at the end, of
+ *  the points' velocities and strains, over those of the continuum and of the start. */
 static Vibration independent(int order, const std::string &transfer, bool musl, int cells,
                              int mode = 1, double until = 100.0)
 {
@@ -314,8 +313,7 @@ PARAMETER_TEST(VibratingBar, TenPeriods, VibrationCase, ValuesIn(vibrating_bar_c
 // A2, mode 10 in 64 cells, 6.7 cells in a wave, over 38 periods, by another code: period and energy
 // over the exact ones, 1.0295 and .958 (FLIP with MUSL), 1.0083 and 1.053 (APIC). Of the period, a
 // tenth of the deviation; the energy of a leapfrog scheme is 1 +- omega dt/2 = 1 +- .047 by its
-// phase, and a tenth of the deviation, over 38 periods, is any phase. The code above is asked to
-// four digits.
+// phase, and a tenth of the deviation, over 38 periods, is any phase. The code above: four digits.
 TEST(VibratingBarModeTen, PeriodAndEnergy)
 {
   const double h = 25.0 / 64, beta = 19.0 * PI / 50.0, v0 = 1.0e-5, dt = 0.02 * h;
@@ -380,9 +378,8 @@ struct Impact {
 
 //
 // Linear functions: a point that goes through a face of a cell changes the forces on the nodes by
-// up to half of its stress (A4), so that nothing can be asked to 2 % where the bars move by cells.
-// Unequal bars do, by 1.5 cells at these velocities; at a tenth of them, with the same answer, no
-// point crosses a face.
+// up to half of its stress (A4), so that 2 % cannot be asked where bars move by cells. Unequal bars
+// do, by 1.5 cells; at a tenth of the velocities, with the same answer, no point crosses a face.
 static void collide(const std::string &options, Impact c)
 {
   SCOPED_TRACE(strprintf("second bar: length %g, modulus %g", c.length2, c.E2));
@@ -440,9 +437,8 @@ static void collide(const std::string &options, Impact c)
     EXPECT_NEAR(body.p[0] / body.mass / speed, v_after[type] / speed, 0.02);
   }
   EXPECT_NEAR(measured(name + "interface stress/exact", stress / samples / c.plateau), 1.0, 0.02);
-  // 15 %, without viscosity, is for APIC. FLIP damps nothing: the front of a step in a chain of
-  // masses and springs is an integral of the Airy function, whose maximum is 1.2743 however fine
-  // the chain is
+  // 15 %, without viscosity, is for APIC. FLIP damps nothing: a step in a chain of masses and
+  // springs is an integral of the Airy function, maximum 1.2743 however fine it is
   const double overshoot = measured(name + "extreme stress of a point/exact", lowest / c.plateau);
   EXPECT_LT(overshoot, name.find("apic") == std::string::npos ? 1.2743 : 1.15);
   if (c.equal) {

@@ -99,8 +99,7 @@ TEST(Column, BucklesUnderItsWeight)
 // A silo (H. A. Janssen, Z. Ver. Dtsch. Ing. 39, 1045 (1895)): walls with friction carry a part of
 // the sand. In a plane bin of the width w, filled to the height H, the floor carries
 //   rho g l w (1 - exp(-H/l)),  l = w/(2 mu K)
-// with the ratio K of horizontal to vertical stress, which the run tells. The weight is put on
-// slowly.
+// with the ratio K of horizontal to vertical stress, which the run tells. Weight comes slowly.
 TEST(Silo, WallsCarryAPart)
 {
   LONG_CASE();

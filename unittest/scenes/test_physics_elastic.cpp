@@ -88,8 +88,7 @@ static double hanging_bar(const HangingCase &c)
       for (int d = 0; d < 2; d++) force[i][d] -= 2.0 * omega * run.mass()[i] * run.v()[i][d];
     }
   });
-  // the tangent modulus mu (1 + 1/F^2) + lambda (1 - ln F)/F^2 of a long stretch is less: it comes
-  // to rest later
+  // the tangent modulus mu (1 + 1/F^2) + lambda (1 - ln F)/F^2 falls with stretch: a later rest
   const double dt = 0.2 * h / speed, rest = (c.g > 500.0 ? 60.0 : 20.0) / omega;
   run.commands(strprintf("timestep %.17g\nrun %ld\n", dt, std::lround((ramp + rest) / dt)));
   double worst = 0.0, last = 0.0, exact_last = 0.0, sideways = 0.0;
@@ -167,8 +166,7 @@ struct BeamCase {
   }
 };
 
-// The bar at the clamp stretches to 1.9 locally: 2 points per cell and axis part there (numerical
-// fracture at t = 1), 3 do not.
+// At the clamp the bar stretches to 1.9: 2 points per cell and axis part there (t = 1), 3 do not.
 static const BeamCase beam_cases[] = {{"shape quadratic transfer apic", 0.2, 3, 1.2},
                                       {"shape quadratic transfer apic", 0.1, 3, 1.2},
                                       {"shape cubic transfer apic", 0.1, 3, 1.2}};

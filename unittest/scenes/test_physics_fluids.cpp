@@ -4,8 +4,7 @@
 // labels: physics
 // timeout: 900
 
-// Gases, shocks, detonation, and viscous flow on the lattice, in strips that are one cell wide,
-// against exact solutions.
+// Gases, shocks, detonation, viscous flow, in strips one cell wide, against exact solutions.
 
 #include "mpm_lammps.h"
 
@@ -63,8 +62,7 @@ class RiemannSolution {
   double g;
 };
 
-/** A strip that is one cell wide, up to x = length; the lattice has the options, and the ledger is
- *  on. */
+/** A strip one cell wide, up to x = length; the lattice has the options, and the ledger is on. */
 std::string strip(double length, double h, const std::string &options, int types = 1)
 {
   return plane("si", "f p", strprintf("0 %.17g 0 %.17g", length, h), types, 0.4 * h) +
@@ -155,8 +153,7 @@ TEST(Sod, LinearShapeFunctionsDoNotConverge)
 
 // Gas at rest under pressure, with noise. Points in the middle of cells are on the edges of
 // functions of nodes that are 1.5 spacings away, where N = s^2/2, and (grad N)^2/N = 2 however
-// little s they reach over: all of the pressure comes at once, and the noise grows. Between the
-// edges it does not.
+// little s they reach over: the pressure comes at once, and noise grows; not between the edges.
 TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
 {
   const auto growth = [](const char *ppc, const char *options) {
@@ -356,8 +353,7 @@ TEST(Detonation, OfTnt)
   EXPECT_GT(peak[1], peak[0]);
 }
 
-// H4: column of liquid under its weight, damped by bulk viscosity: for eos linear the density is
-// density_0 exp(g (top - y)/c^2)
+// H4: liquid under its weight, damped; eos linear: density is density_0 exp(g (top - y)/c^2)
 TEST(Hydrostatic, Column)
 {
   LONG_CASE();
@@ -491,11 +487,10 @@ TEST(Channel, SteadyFlowOfYieldStressAndPowerLawFluids)
             0.025);
 }
 
-// Drops in free flight. A point that is alone keeps the shear of its velocity gradient L, as
-// nothing acts on it, and its deformation gradient grows for ever; its J must not take notice of
-// that. With APIC and quadratic functions the nodes give dL/dt = -4 J sigma/(density_0 h^2), so
-// that small changes of volume are oscillations of ln J with the frequency 2 sqrt(DIM) c/h, and V_0
-// psi + m h^2/8 L:L is conserved.
+// Drops in free flight. A point alone keeps the shear of its velocity gradient L, and its
+// deformation gradient grows for ever, but not its J. With APIC and quadratic functions the nodes
+// give dL/dt = -4 J sigma/(density_0 h^2), so that small changes of volume are oscillations of ln J
+// with the frequency 2 sqrt(DIM) c/h, and V_0 psi + m h^2/8 L:L is conserved.
 constexpr double SHEAR = 0.5, DT = 0.02, DENSITY = 1.5, BULK = 150.0;
 
 /** Points of a quarter (3d: eighth) of a cell each, in a block of n points along each axis. */
@@ -621,8 +616,7 @@ TEST(FreeFlight, StrainOfAStepIsLimited)
       }
 }
 
-// what is forgotten there matters to a law that knows all of F, and to the lattice in the total
-// frame
+// what is forgotten matters to a law that knows all of F, and to the lattice in the total frame
 TEST(FreeFlight, SolidsForgetNothing)
 {
   for (int dim : {2, 3}) {

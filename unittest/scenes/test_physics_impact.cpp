@@ -234,16 +234,14 @@ TEST(HalfSpace, GrainLosesEnergyToWaves)
 // diameter. There the contact has a radius of one cell: arrival 0.91, force 1.03, velocity of the
 // last of four spheres 0.71 (20 cells: 1.06, 0.75, 0.86); these are four spheres with 40 cells,
 // four in the radius of the contact, which is what Hertz's force takes (test_hertz). With 56 cells
-// and a velocity of 0.02: 0.948, 1.038, 0.973, as spheres that overlap by 8 % of their radius are
-// stiffer than Hertz's.
+// and a velocity of 0.02: 0.948, 1.038, 0.973, as overlaps of 8 % are stiffer.
 struct ChainMotion {
   double arrival, force, last;    // at a sphere; of the peak; velocity of the last sphere
 };
 
 constexpr double CHAIN_E = 1.0, CHAIN_NU = 0.3;
 
-/** Largest mean of the force over one unit of time, which is a fifth of a contact, and when it
- *  was. */
+/** Largest mean of the force over a unit of time, a fifth of a contact, and when it was. */
 ChainMotion peak(const std::vector<double> &momentum, double dt, double last)
 {
   ChainMotion result{0.0, 0.0, last};

@@ -217,11 +217,10 @@ TEST(OrderLinear, DivergesWithCellCrossing)
   EXPECT_GT(mms_error(2, 16, .05, options, true), 0.5 * mms_error(2, 8, .05, options, true));
 }
 
-// GIMP with fixed sizes: where the body is compressed at a wall, boxes reach beyond it, and mirror
-// walls do as well as symmetry. Expected: a small code of its own in one dimension with such walls.
-// With nodes at and within the walls only, as in the table, the functions of these points do not
-// sum to one, and it has 7.5e-3, 2.28e-3, 7.8e-4; contiguous boxes never reach beyond, and agree
-// with the table.
+// GIMP with fixed sizes: compressed at a wall, boxes reach beyond it, and mirror walls do as
+// symmetry. Expected: a small code of its own in one dimension with such walls. With nodes at and
+// within the walls only, as in the table, the functions of these points do not sum to one, and it
+// has 7.5e-3, 2.28e-3, 7.8e-4; contiguous boxes never reach beyond, and agree with the table.
 TEST(FixedGimp, WallsAgainstSymmetry)
 {
   const std::string options = "shape gimp aspect 1 2 transfer flip 1.0 scheme usl";
@@ -273,9 +272,8 @@ static const TransferOrder orders[] = {
 };
 
 /** Largest rms error of pic for a small amplitude, relative to it: of what goes to the nodes and
- *  back, a wave loses the share D k^2 h^2 in each step, so that its amplitude falls as exp(-D (pi
- *  h)^2 t / 2 dt), with dt = 0.2 h/c as exp(-2.5 D pi^2 h c t). The error is of first order when
- *  this exponent is small. */
+ *  back, a wave loses D k^2 h^2 in a step: amplitude exp(-D (pi h)^2 t / 2 dt), with dt = 0.2 h/c
+ *  as exp(-2.5 D pi^2 h c t). The error is of first order when this exponent is small. */
 static double pic_error(double D, int ne)
 {
   double error = 0.0;
@@ -323,9 +321,8 @@ PARAMETER_TEST(Sweep, EveryTransferAndFrame, ShapeOrder, ValuesIn(shapes))
 // Functions that are modified at the walls and need no nodes outside are of second order, too.
 // Between walls that slip the solution is odd about them, so that the linear continuation f_-1 = 2
 // f_0 - f_1 and the mirror image -f_1 are the same: what differs is the lumped mass of the first
-// node inside alone, by twice that of its image. With v = sin(pi x) this is a part of order h (pi
-// h)^2 of the mass of the motion, so that the two differ by one order more than each of them from
-// the exact solution.
+// node inside alone, by twice that of its image. With v = sin(pi x) this is of order h (pi h)^2 of
+// the mass in motion: the two differ by one order more than each from the exact solution.
 TEST(MMS, EdgesModified)
 {
   for (const char *options : {"shape cubic transfer flip 1.0 scheme musl",

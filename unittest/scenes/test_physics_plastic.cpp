@@ -10,9 +10,8 @@
 
 using namespace MPM_TEST;
 
-// E1(f): a bar in uniaxial strain hits a wall at 100 m/s. An elastic precursor runs ahead of the
-// plastic wave. J2 without hardening, E = 70 GPa, nu = 0.33, yield stress 0.3 GPa; the velocities
-// are those in the frame of the bar.
+// E1(f): a bar in uniaxial strain hits a wall at 100 m/s. An elastic precursor, then the plastic
+// wave. J2, E = 70 GPa, nu = 0.33, yield stress 0.3 GPa; velocities in the frame of the bar.
 TEST(PlasticWave, TwoWaveStructure)
 {
   const double E = 70e9, nu = 0.33, sigmay = 0.3e9, rho = 2700.0, up = 100.0;

@@ -54,8 +54,7 @@ TEST(StiffnessRatio, PulseReturns)
     }
     if (run.time() < soft) peak = std::max(peak, stress / n);
   });
-  // momentum of the soft half when the right pulse, A width sqrt(2 pi) H, has returned, the other
-  // one as well
+  // momentum of the soft half when the right pulse, A width sqrt(2 pi) H, and the other are back
   const double impulse = A * width * sqrt(2.0 * PI) * H;
   EXPECT_NEAR(run.sums(1).p[0] / impulse, 2.0, 1.0e-3);
   run.commands(strprintf("run %ld\n", std::lround(soft / run.lmp->update->dt)));
@@ -103,9 +102,8 @@ TEST(StiffnessRatio, TimeStep)
 }
 
 // J2: water and a gas of a thousandth of its density, one above the other in a closed column, at
-// rest from the start, in one field. After 1e4 steps: kinetic energy below 1e-4 rho g H^2, pressure
-// of the gas to 5 %, no point of gas faster than sound. The column is one point wide, so that water
-// stays above the gas.
+// rest. After 1e4 steps: kinetic energy below 1e-4 rho g H^2, pressure of the gas to 5 %, no point
+// of gas faster than sound. The column is one point wide, so that water stays above the gas.
 TEST(DensityRatio, ColumnsAtRest)
 {
   LONG_CASE();

@@ -249,15 +249,13 @@ PARAMETER_TEST(GrainOnBlock, Momentum, const char *,
     const std::string name = strprintf("K1(a) %s%s: ", GetParam(), friction ? ", friction" : "");
     EXPECT_LT(measured(name + "momentum", p), 1.0e-12);
     // also with tangential forces, whose torque a point takes into its affine field (without:
-    // 0.0015); FLIP does not conserve angular momentum, and in the total frame only affine motion
-    // does so
+    // 0.0015); FLIP does not keep it, and in the total frame only affine motion does
     measured(name + "angular momentum", L);
     if (name.find("apic") != std::string::npos) {
       EXPECT_LT(L, name.find("total") == std::string::npos ? 1.0e-12 : 4.0e-4);
     }
     // out of contact there is no energy but that of motion and in the block. FLIP with MUSL keeps
-    // it to first order in the time step; friction takes 7 %. APIC damps the vibrations of this
-    // block of 8 cells.
+    // it to first order in the time step; friction takes 7 %. APIC damps vibrations of 8 cells.
     double spin = 0.0;
     for (int i = 0; i < run.n(); i++)
       if (run.lmp->atom->type[i] == 2)

@@ -30,9 +30,8 @@ std::string layer(double depth, double h, int cells, double angle, double ramp,
                 g, ramp, ramp, std::sin(angle), -std::cos(angle));
 }
 
-// G2: flow with mu(I) on an incline, u(y) = 2/3 I_theta/d sqrt(fraction g cos) (h^1.5 - (h-y)^1.5)
-// (L.E. Silbert et al., Phys. Rev. E 64 (2001) 051302; P. Jop et al., J. Fluid Mech. 541 (2005)
-// 167)
+// G2: mu(I) on an incline, u(y) = 2/3 I_theta/d sqrt(fraction g cos) (h^1.5 - (h-y)^1.5) (L.E.
+// Silbert et al., Phys. Rev. E 64 (2001) 051302; P. Jop et al., J. Fluid Mech. 541 (2005) 167)
 struct Incline {
   double surface, rms;    ///< velocity at the surface, and error of the profile, over the exact u_s
   double fastest;
@@ -84,9 +83,8 @@ TEST(GranularFlow, StopsBelowTheStaticAngle)
   EXPECT_LT(measured("G2 velocity at 20 degrees", flow(20.0, 10, 0.05, 0.6).fastest), 1e-4);
 }
 
-// G3: infinite slope without cohesion. Where flow keeps the volume, the strength on a plane of
-// sliding is tan = sin(phi) (E.H. Davis, in: Soil Mechanics, Butterworths, 1968, p. 341): coaxial
-// flow.
+// G3: infinite slope without cohesion. Flow keeps the volume: strength on a plane of sliding tan =
+// sin(phi) (E.H. Davis, in: Soil Mechanics, Butterworths, 1968, p. 341).
 TEST(InfiniteSlope, SlidesWhenTooSteep)
 {
   const double depth = 0.5, h = 0.05, phi = 30.0 * DEG;
@@ -195,8 +193,7 @@ TEST(ColumnCollapse, RunOut)
 
 // Transfers with an affine matrix create no energy at rough walls. The matrix of a single grain
 // near the floor and its velocity are together projected on the fields that vanish there, v + C d =
-// 0 with the distance d down to the floor: with the kinetic energy v^2 + D C^2 that leaves v s/(1 +
-// s), s = d^2/D.
+// 0 at the depth d: with the kinetic energy v^2 + D C^2 that leaves v s/(1 + s), s = d^2/D.
 TEST(RoughFloor, StopsAGrain)
 {
   for (const char *shape : {"quadratic", "cubic"})

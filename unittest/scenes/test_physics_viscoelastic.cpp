@@ -3,8 +3,7 @@
 
 // labels: physics
 
-// Standing waves in damped solids, one cell across, periodic: amplitude over two periods, and where
-// the energy goes.
+// Standing waves in damped solids, one cell across: amplitude over two periods; energy.
 
 #include "mpm_lammps.h"
 

@@ -442,8 +442,7 @@ PARAMETER_TEST(Turn, InflatesNothing, std::string,
       fmt::format("timestep {:.17g}\nrun {}\n", 2.0 * M_PI / N, N));
   const double J = run.evaluate("c_mean");
 
-  // in equilibrium a spinning disk has J - 1 = (1 - 2 nu)(1 + nu) rho w^2 R^2/(2 E) = 0.0042 in the
-  // mean, about which it breathes
+  // in the mean a spinning disk has J - 1 = (1 - 2 nu)(1 + nu) rho w^2 R^2/(2 E) = 0.0042
   EXPECT_GT(measured(GetParam() + ": J after a turn", J), 1.0 - 1.0e-3);
   EXPECT_LT(J, 1.0 + 2.0 * 0.0042 + 1.0e-3);
 }

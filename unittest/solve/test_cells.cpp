@@ -68,8 +68,7 @@ TEST(CellOperator, IsTheEquations)
   }
 }
 
-// Conjugate gradients need a preconditioner that is symmetric and positive definite, also where the
-// period is odd.
+// Conjugate gradients need a symmetric and positive definite preconditioner, also for odd periods.
 TEST(CellMultigrid, IsSymmetric)
 {
   for (const int dim : {2, 3})
@@ -117,8 +116,7 @@ TEST(CellMultigrid, Iterations)
   }
 }
 
-// Without a preconditioner but the diagonal they are those of plain conjugate gradients: 116 and
-// 231 for the tank.
+// With the diagonal alone they are those of plain conjugate gradients: 116 and 231 for the tank.
 TEST(CellOperator, IterationsWithTheDiagonal)
 {
   CellScene scene{2, 32};
@@ -161,8 +159,7 @@ TEST(CellMultigrid, IterationsOfHardCases)
   EXPECT_LE(most, 27);
   EXPECT_LE(most, 1.45 * least);
 
-  // walls between cells, every second one with a gap at the other end: large cells must not join
-  // both sides
+  // walls between cells, with gaps at ends in turns: large cells must not join both sides
   CellScene labyrinth{2, 64};
   labyrinth.open = [](const int *i, int d) {
     return d == 1 && i[1] % 3 == 0 && (i[1] % 2 ? i[0] > 0 : i[0] < 63) ? 0.0 : 1.0;
@@ -172,8 +169,7 @@ TEST(CellMultigrid, IterationsOfHardCases)
   EXPECT_LE(winding.iterations(), 60);
 }
 
-// A tank under gravity that is closed but for its surface: the pressure is the depth, exactly, also
-// with shares of faces.
+// A tank under gravity, open at the top: pressure is the depth, exactly, also with shares of faces.
 TEST(CellMultigrid, WaterAtRest)
 {
   for (const int dim : {2, 3}) {
@@ -311,9 +307,8 @@ TEST(CellMultigrid, BubbleWithPressure)
   }
 }
 
-// A column of water that is released: pressures of part O6 of the reference values, by a series,
-// with surfaces at the places where cells end. Half a spacing from there the distance to the
-// surface is half as long.
+// A column of water that is released: pressures of benchmark O6, by a series, with surfaces where
+// cells end. Half a spacing from there the distance to them is half as long.
 TEST(CellMultigrid, ReleasedColumn)
 {
   double error[2];
@@ -330,8 +325,7 @@ TEST(CellMultigrid, ReleasedColumn)
     }
     A.finish();
     closed.multigrid.setup(A);
-    // acceleration -1 in each face along y that is no wall: div a = grad p balance at the bottom
-    // row
+    // acceleration -1 in each face along y but walls: div a = grad p balance at the bottom row
     auto b = closed.values([&](const int *i) {
       return i[1] == 0 ? 1.0 / n : 0.0;
     });

@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// FlexibleGMRES, for systems that are indefinite or not symmetric: known solutions, and numbers of
-// iterations from theory.
+// FlexibleGMRES, for indefinite or unsymmetric systems: known solutions, iterations from theory.
 
 #include "small_systems.h"
 #include "solve/flexible_gmres.h"
@@ -149,8 +148,7 @@ TEST(FlexibleGMRES, ConvectionWithRestarts)
   }
 }
 
-// A cycle of n nodes that hand their value on: nothing is gained in n - 1 iterations, and the last
-// one solves it.
+// A cycle of n nodes that hand their value on: nothing in n - 1 iterations, all in the last one.
 TEST(FlexibleGMRES, CyclicShift)
 {
   const int n = 12;

@@ -54,8 +54,7 @@ Eigen::MatrixXd dense(const std::vector<std::vector<MatrixBlock>> &lists, int ro
   return A;
 }
 
-// Products, blocks, the next level, and the whole matrix on ranks of which one has no rows are
-// those of the dense matrix.
+// Products, blocks, the next level, and the matrix on ranks, one without rows: the dense matrix.
 TEST(BlockRows, AreThoseOfTheMatrix)
 {
   constexpr int ROWS = 13, NEXT = 5;

@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// What pairs of motions and forces tell of a matrix: against the recursion of Nocedal, and the
-// secant equation.
+// Pairs of motions and forces for a matrix: against Nocedal's recursion and the secant equation.
 
 #include "solve/quasi_newton.h"
 
@@ -45,8 +44,7 @@ VectorXd recursion(const std::deque<Pair> &pairs, const MatrixXd &H0, VectorXd f
   return d;
 }
 
-// more pairs than there is room for, parts of corrections, and pairs of several sequences with
-// other forces in between
+// more pairs than there is room for, parts of corrections, several sequences with other forces
 TEST(QuasiNewton, IsTheRecursion)
 {
   for (const int n : {3, 37, 64}) {
@@ -82,8 +80,7 @@ TEST(QuasiNewton, IsTheRecursion)
   }
 }
 
-// the last motion is what H makes of its change of forces; what has no positive curvature is no
-// pair
+// the last motion is H times its change of forces; what has no positive curvature is no pair
 TEST(QuasiNewton, KnowsItsLastMotion)
 {
   const int n = 21;

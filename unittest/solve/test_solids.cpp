@@ -48,8 +48,7 @@ double weight(const double *, int a)
   return a == 1 ? -1.0 : 0.0;
 }
 
-/** Products with the matrix that conjugate gradients need for two decades, from those for eight;
- *  solutions are true. */
+/** Products that conjugate gradients need for two decades, from those for eight; true solutions. */
 double products(SolidSystem &system)
 {
   system.setup();
@@ -91,8 +90,7 @@ SolidScene slope(int n)
   return scene;
 }
 
-// Symmetric and positive definite, with constraints that are not along axes, masses, an odd period,
-// and in 3d.
+// Symmetric and positive definite, with constraints off the axes, masses, an odd period, in 3d.
 TEST(SplineMultigrid, IsSymmetric)
 {
   auto ring = block(2, 13);
@@ -178,8 +176,7 @@ TEST(SplineMultigrid, ProductsDoNotGrow)
   }
 }
 
-// The same with five levels, and in 3d with three: coarse levels have the smoother of the finest
-// one.
+// The same with five levels, in 3d with three: coarse levels have the smoother of the finest one.
 TEST(SplineMultigrid, ManyLevels)
 {
   auto many = block(2, 64);
@@ -239,8 +236,7 @@ TEST(SplineMultigrid, ProductsOfHardCases)
 }
 
 // Levels of multigrid change the way and not the answer. Blocks of nodes as preconditioner need
-// many times the products. A few nodes of the slope have motions that no point sees: energies are
-// compared.
+// many times the products. Energies are compared, as no point sees some motions of nodes.
 TEST(SplineMultigrid, SameSolutionAsBlocks)
 {
   SolidSystem system(slope(16));
@@ -256,8 +252,7 @@ TEST(SplineMultigrid, SameSolutionAsBlocks)
   EXPECT_GT(report.iterations, 3 * needed);
 }
 
-// Nothing holds a body: forces that balance move it by no more than its deformation, and are solved
-// for.
+// Nothing holds a body: forces that balance only deform it, and are solved for.
 TEST(SplineMultigrid, FreeBody)
 {
   auto scene = block(2, 16);
@@ -334,8 +329,7 @@ TEST(EnvelopeFactors, SolveLikeDenseOnes)
     }
 }
 
-/** A matrix on a lattice of n by m points in pieces of so many columns, a shift apart from
- *  singular. */
+/** A matrix on n by m points in pieces of so many columns, a shift apart from singular. */
 Eigen::SparseMatrix<double> springs(int n, int m, int piece, double shift = 0.01)
 {
   std::vector<Eigen::Triplet<double>> entries;
@@ -356,8 +350,7 @@ Eigen::SparseMatrix<double> springs(int n, int m, int piece, double shift = 0.01
 }
 
 // Halves that are eliminated towards the middle: the same on any number of ranks, bit by bit, each
-// of which has a half of the factors, and right in one piece, in pieces, and where hardly anything
-// is in the halves.
+// with a half of the factors, and right in one piece, in pieces, and with small halves.
 TEST(EnvelopeFactors, HalvesOnRanks)
 {
   for (const auto &[n, m, piece] : {std::array<int, 3>{60, 9, 1000},
@@ -440,8 +433,7 @@ TEST(EnvelopeFactors, RoundedOnes)
       }
 }
 
-// Nodes come to other ranks, which also know some of others, and keep their places; not if one is
-// missing, new, or another one.
+// Nodes come to other ranks, which know some, and keep their places; not if one is missing or new.
 TEST(SharedNodes, KeepTheirOrder)
 {
   constexpr int NRANKS = 3, N = 20, NONE = -1;

@@ -181,9 +181,8 @@ PARAMETER_TEST(Walls, ReactionsAndEnergiesAgree, std::string,
   }
 }
 
-// A bar across all ranks, at rest. Points next to a border at x = 8k reach the nodes 8k-1, 8k, 8k+1
-// of both ranks, and in the plane of the border 7x7 nodes. Blocks next to a wall are sent as a
-// whole
+// A bar across ranks, at rest. Points next to a border x = 8k reach the nodes 8k-1, 8k, 8k+1 of
+// both ranks, and in the plane of the border 7x7 nodes. Blocks next to a wall are sent as a whole
 TEST(Halo, SendsNodesThatPointsOfBothRanksReach)
 {
   const std::string n = std::to_string(nranks());
@@ -351,8 +350,7 @@ TEST(Grains, OnABlock)
   }
 }
 
-// shifting everything by a fraction of h changes only what theory says: nothing for a periodic
-// box whose lattice is shifted along
+// shifting everything by a fraction of h changes nothing in a periodic box with its lattice
 TEST(Translation, LatticeAndBodyTogether)
 {
   // points of create_points follow the lattice, so that both bodies are the same set of points

@@ -4,8 +4,7 @@
 // labels: smoke
 // mpi: 1
 
-// Each stage of a step says what it reads and writes. It writes nothing else, and what it reads at
-// nodes was written before.
+// Each stage says what it reads and writes: it writes nothing else, and reads what was written.
 
 #include "mpm_lammps.h"
 

@@ -64,8 +64,7 @@ PARAMETER_TEST(Restart, ContinuesBitwise, std::string,
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
 }
 
-// the write_restart command between runs, and a file of one rank read by many; sums that were begun
-// before have the same digits, too
+// write_restart between runs, and a file of one rank read by many; sums begun before go on, too
 PARAMETER_TEST(RestartCommand, ContinuesBitwiseAndOnOtherRanks, std::string,
                Values("transfer apic", "shape cubic transfer flip 1.0 scheme usf"))
 {
@@ -255,8 +254,7 @@ TEST(RestartState, NewVelocitiesAreSeen)
   }
 }
 
-// what was changed before the file is written counts like a change without a file: the next run
-// sets its time step anew
+// a change before the file is written counts as without a file: a new time step in the next run
 TEST(RestartState, TimeStepIsThatWithoutTheFile)
 {
   const ScratchFile file("dt");

@@ -4,8 +4,7 @@
 // labels: restart
 
 // What stands before and after read_restart, in any order, forgotten, or changed: the run goes on
-// bit by bit (to round-off with materials in another order), or it says what is not as in the run
-// that wrote the file.
+// bit by bit (to round-off with materials in another order), or says what has changed.
 
 #include "mpm_lammps.h"
 
@@ -36,8 +35,7 @@ static const std::string points =
 static const std::string head = plane("lj", "f f", "0 8 0 8", 2);
 static const std::string pair = "pair_style zero 1.0\npair_coeff * *\n";
 
-/** The run that writes the file, and what it does in the next 20 steps; and what another input
- *  makes of the file. */
+/** The run that writes the file, its next 20 steps, and what another input makes of the file. */
 struct Continuations {
   const ScratchFile file{"bin"};
   std::vector<Scene::State> expected;
@@ -274,8 +272,7 @@ TEST(RestartOrders, TinyVelocitiesAreRead)
   EXPECT_TRUE(found.identical);
 }
 
-// exclusions that keep grains and points of a body from pushing on each other; and fixes without a
-// state
+// exclusions that keep grains and points of a body apart; and fixes without a state
 TEST(RestartOrders, GrainsGoOnAsTheyWere)
 {
   const std::string lists = "neighbor 0.3 bin\ncomm_modify vel yes\n";

@@ -41,8 +41,7 @@ static const char *const transfers[] = {"transfer pic",
 
 static std::vector<std::string> all_variants()
 {
-  // what the lists above leave out: the other schemes, polypic, domains, light nodes, the total
-  // frame
+  // what the lists above leave out: other schemes, polypic, domains, light nodes, the total frame
   std::vector<std::string> all = {"shape cubic transfer polypic",
                                   "shape linear light 0.5 transfer apic",
                                   "shape linear light 0.5 transfer aflip 1.0 scheme musl",
@@ -82,8 +81,7 @@ PARAMETER_TEST(Conservation, MassAndMomentum, std::string, ValuesIn(all_variants
   const auto end = run.sums();
   EXPECT_EQ(end.mass, start.mass);
   for (int d = 0; d < 2; d++) EXPECT_NEAR(end.p[d], start.p[d], 1.0e-12 * start.mass);
-  // a point with free corners is put in the middle of them, which parts from its path in second
-  // order
+  // a point with free corners is put in their middle, which parts from its path in second order
   const double exact = GetParam().find("cpdi2") == std::string::npos ? 1.0e-12 : 1.0e-5;
   for (int d = 0; d < 2; d++)
     EXPECT_NEAR(end.x[d], start.x[d] + 300 * 2.0e-4 * start.p[d] / start.mass, exact);
@@ -114,12 +112,11 @@ PARAMETER_TEST(NoiseAtRest, DoesNotGrow, std::string, ValuesIn(all_variants()))
   EXPECT_EQ(left < 0.01, !keeps);
 }
 
-// Noise of points that change cells: a periodic medium under the uniform pressure p = 0.01 K, with
-// points 0.7 node spacings apart along both axes. Nothing should happen, at rest or in flight over
-// the lattice. What nodes feel is the sum of p V_p grad N, which is zero for points that are boxes
-// side by side. For B-splines of order n it is, by Poisson's summation, a wave of k = 2 pi/0.7 with
-// the amplitude 2 p k sinc(k h/2)^(n+1), and smaller ones of 2 k, 3 k, ..., all of which add up to
-// sums over the points.
+// Noise of points that change cells: a periodic medium under the pressure p = 0.01 K, with points
+// 0.7 node spacings apart. Nothing should happen, at rest or in flight. What nodes feel is the sum
+// of p V_p grad N, which is zero for points that are boxes side by side. For B-splines of order n
+// it is, by Poisson's summation, a wave of k = 2 pi/0.7 with the amplitude 2 p k sinc(k h/2)^(n+1),
+// and smaller ones of 2 k, 3 k, ..., all of which add up to sums over the points.
 struct Crossing {
   const char *shape;
   int order;                                // of B-splines, 0: none
@@ -210,9 +207,8 @@ static const Crossing crossing_noise_cases[] = {
     {"shape cpdi2", 0, 0.0, 1.0e-11, 1.0e-11}};
 INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise, ::testing::ValuesIn(crossing_noise_cases));
 
-// A free rectangle begins to stretch along its own axis. What it has reached after about a quarter
-// of its period must not depend on how it lies on the lattice: shifts by fractions of a cell, and
-// rotations of the body.
+// A free rectangle begins to stretch along its own axis. What it has reached after a quarter of its
+// period must not depend on how it lies on the lattice: shifts and rotations.
 static double extension(const std::string &options, double shift, double degrees)
 {
   Scene run(rectangle("-0.8 0.8 -0.4 0.4", options) +
@@ -259,10 +255,9 @@ TEST_P(GridInvariance, ShiftsAndRotations)
 
 INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(shapes));
 
-// Fracture: not asked for here. With gradients that jump at the faces of cells (linear, bernstein),
-// the largest extension is that of the first shift, which puts layers of points next to faces and
-// into otherwise empty cells. On faces, with a shift of a quarter of a cell, round-off would
-// decide.
+// Fracture. With gradients that jump at the faces of cells (linear, bernstein), the largest
+// extension is that of the first shift, which puts layers of points next to faces and into
+// otherwise empty cells. On faces, with a shift of a quarter of a cell, round-off would decide.
 static const Variant grid_invariance_cases[] = {
     {"shape cpdi", 0.01, 0.0, 0.0},
     {"shape cpdi2", 0.01, 0.0, 0.0},
@@ -323,8 +318,7 @@ PARAMETER_TEST(Fracture, Stretch, Variant, ValuesIn(shapes))
 
 // The numbers of the reference, about 2, 3, and 4, are those of evenly stretched points, half a
 // cell apart at first, under a uniform stress: where a gap carries nothing, and the whole stress is
-// a force on the node next to it. 10 %, as gaps of all places in their cells are sampled by 40 of
-// them, and for the word about
+// a force on the node next to it. 10 %, as 40 gaps sample all places in cells, and for "about"
 TEST(Fracture, EvenStretch)
 {
   const struct {
@@ -439,8 +433,7 @@ TEST(Equivalent, SchemesAgreeForSmallSteps)
 // Points fly apart with the velocity G X, nearly without stress, in steps of 1 and 4 in turns, and
 // APIC is given its matrix G M^-1: F is that of their motion, M(t) = I + G t. USF knows that of the
 // steps before the last one, USAVG half of the last; what they strain in the first step, M(-dt)^-1
-// or half of that, has no motion. Half a step of USAVG is right to third order, (|G| dt)^3 with |G|
-// = 0.5
+// or half of that, has no motion. Half a step of USAVG is right to (|G| dt)^3 with |G| = 0.5
 TEST(ChangingSteps, StrainIsThatOfTheMotion)
 {
   const std::array<double, 4> G = {0.2, -0.3, 0.4, -0.1};

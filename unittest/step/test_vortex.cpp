@@ -6,8 +6,7 @@
 
 // B2, the generalized vortex (K. Kamojjala, R. Brannon, A. Sadeghirad, J. Guilkey, Eng. Comput. 31
 // (2015) 269): a ring, 0.75 < R < 1.25, that is swirled by alpha = g(t) s(R), g = G (1 - cos 2 pi
-// t)/2, with exact forces at the reference positions. G = 1 is a shear of 6.2, which tears bodies
-// in the updated frame.
+// t)/2, with exact forces at the reference positions. G = 1, a shear of 6.2, tears updated bodies.
 
 #include "mpm_lammps.h"
 
@@ -21,8 +20,7 @@ struct Swirl {
       spin;    // angular momentum at the end, where it is 0, over the largest of the exact motion
 };
 
-/** n cells across the ring. volume: of domains, and of points by J, where the ring is turned
- *  most. */
+/** n cells across the ring. volume: of domains, and by J, where the ring is turned most. */
 static Swirl vortex(const std::string &options, int n, double G, double *volume = nullptr)
 {
   const double h = 0.5 / n, c2 = 1.0 / 2.6, w = 2.0 * PI, dt = 0.2 * h / 5.06;
@@ -127,8 +125,7 @@ PARAMETER_TEST(Vortex, Converges, VortexCase, ValuesIn(vortex_cases))
   if (c.G == 0.1) { EXPECT_LT(error[2], 2.5e-3); }
 }
 
-// with 5 cells across the ring, the ragged rim turns free corners inside out; and the volume of
-// domains is that of F
+// with 5 cells across, the ragged rim turns free corners inside out; volumes are those of F
 TEST(VortexVolume, FreeCorners)
 {
   for (const char *options :

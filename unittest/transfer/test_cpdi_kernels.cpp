@@ -375,8 +375,7 @@ struct NodeSums {
   }
 };
 
-// from the nodes to the points and back, the field stays as it is: APIC keeps all of its angular
-// momentum
+// from nodes to points and back, the field stays as it is: APIC keeps all of its angular momentum
 
 TEST_P(ApicKernels, KeepAngularMomentum)
 {
@@ -402,10 +401,9 @@ TEST_P(ApicKernels, KeepAngularMomentum)
     EXPECT_NEAR(after.spin[d], before.spin[d], 1e-13 * before.mass * 8.0 * points.step.h);
 }
 
-// Again and again from points to nodes and back: with APIC no field gains energy, as the affine
-// field of a point is the one nearest to what the nodes have. That of the velocity gradient (TPIC)
-// is not: in domains that are sheared by 6, waves as long as a domain grow, fastest where corners
-// are on nodes.
+// Again and again from points to nodes and back: with APIC no field gains energy, as a point's
+// affine field is the nearest to what nodes have. That of TPIC is not: in domains that are sheared
+// by 6, waves as long as a domain grow, fastest where corners are on nodes.
 
 TEST_P(Kernels, ShearedDomainsGainNoEnergy)
 {
@@ -464,8 +462,7 @@ TEST_P(Kernels, InvertedDomainsAreReported)
   }
 }
 
-// a corner that is pushed in nearly to the opposite one: the size is positive, but not all weights
-// are
+// a corner pushed in nearly to the opposite one: the size is positive, but not all weights are
 
 TEST_P(FreeCorners, OfFoldedDomainsAreReported)
 {

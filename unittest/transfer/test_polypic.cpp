@@ -53,9 +53,8 @@ double field(int dim, const double *x, int i, int along)
   return sum;
 }
 
-// a field of products of coordinates goes to the nodes and back without a change, at all points, if
-// those are given its modes, whatever the instruction set; apic, which has no such modes, changes
-// it
+// a field of products of coordinates goes to nodes and back unchanged if points have its modes, for
+// any instruction set; apic, without such modes, changes it
 
 TEST(Polypic, RoundTrip)
 {

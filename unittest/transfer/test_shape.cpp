@@ -178,8 +178,7 @@ TYPED_TEST(Spline, IsConstexpr)
 
 class GimpShape : public ::testing::TestWithParam<double> {
  protected:
-  /** Calls check(distance to the middle node, fraction) at random places and at those where the
-   *  function changes its form. */
+  /** Calls check(distance to the middle node, fraction) at random places and where pieces meet. */
   template <class Check> void at_positions(Check check) const
   {
     const double s = GetParam();

@@ -79,8 +79,7 @@ std::vector<Scene::State> after_a_step_on_the_floor(Scene &run)
   return found;
 }
 
-/** Linear in the distance from a wall at y = 0 that has the velocity V; the components that are
- *  free there have any value. */
+/** Linear in the distance from a wall at y = 0 of velocity V; free components have any value. */
 constexpr double ACROSS[3] = {0.7, -0.4, 0.25};
 auto shear(const double *V, bool stick)
 {
@@ -401,8 +400,7 @@ TEST(Work, OfTheMeanVelocity)
     }
 }
 
-// Ground shaken from below, away from its resonance: what the base has worked is what the ground
-// has, with what is lost on the way
+// Ground shaken from below, off its resonance: work of the base is the energy, with what is lost
 TEST(Work, OfAShakenBase)
 {
   for (const double dt : {0.1, 0.4}) {
@@ -509,8 +507,7 @@ TEST_P(Separate, ABodyThatLeavesFeelsNothing)
 {
   const std::string spread = "velocity all ramp vy 0.0 0.2 y 0 0.4 sum yes\nrun 100\n";
   Scene with(scene(0.0, "fix w all mpm/boundary ylo separate friction 0.5", 1.0) + spread);
-  // a wall that is out of reach: with musl, points of fields that have a separating wall move
-  // otherwise
+  // a wall out of reach: with musl, points of fields that have a separating wall move otherwise
   Scene without(scene(0.0, "fix w all mpm/boundary yhi separate", 1.0) + spread);
   EXPECT_LT(difference(with.gather(), without.gather()), 1.0e-13);
   EXPECT_EQ(with.fix("w")->compute_scalar(), 0.0);
@@ -670,8 +667,7 @@ TEST(Rotation, AFullTurnKeepsTheRadius)
   EXPECT_LT(measured("drift", farthest(before, run.gather())), 5.0e-11);
 }
 
-// the same in the total frame, whose nodes know the material and not where it is, about an axis
-// that moves along
+// the same in the total frame, whose nodes do not know places, about an axis that moves along
 TEST(Rotation, TotalFrame)
 {
   for (const char *options : {"", "scheme musl transfer flip 0.9 shape linear"}) {
@@ -817,9 +813,8 @@ TEST(Motion, FlipFollowsTheWalls)
   }
 }
 
-// FLIP: of the old velocities at the wall relative to it, those of the nodes in its plane and the
-// odd part of those of nodes and their images are taken away, but for what is above that of the
-// first node inside
+// FLIP: old velocities relative to the wall at nodes in its plane, and the odd part of those of
+// nodes and images, are taken away, but for what is above that of the first node inside
 TEST(Motion, FlipTakesAsMuchOfTheOldVelocityAsTheFirstNodeInsideHas)
 {
   for (const int order : {2, 3})
@@ -875,8 +870,7 @@ TEST(Motion, FlipTakesAsMuchOfTheOldVelocityAsTheFirstNodeInsideHas)
 
 // The same at a face between planes of nodes: what material brings along beyond the first nodes
 // inside is lost at once, while a uniform strain, which a vibration may well have, stays. (Without
-// forces the velocities of nodes before and after the step are the same, and so would be those of
-// points.)
+// forces velocities would be the same before and after the step.)
 TEST(Motion, FlipTakesFromTheOldVelocityAtACutFace)
 {
   for (const bool arrives : {false, true}) {
@@ -907,8 +901,7 @@ TEST(Motion, FlipTakesFromTheOldVelocityAtACutFace)
   }
 }
 
-// FLIP: a block that is thrown at a wall returns with its speed (0.59 of it with an update as in
-// PIC at the wall)
+// FLIP: a block thrown at a wall returns with its speed (0.59 of it with an update as in PIC)
 TEST(Rebound, FlipKeepsTheEnergy)
 {
   if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
@@ -984,8 +977,7 @@ TEST(Motion, PistonOfChangingShape)
   EXPECT_NEAR(run.fix("w")->compute_scalar(), -0.1 * 16.0 * v, 1.0e-6);
 }
 
-// a ball that moves and grows: its surface has the velocity of its center, and the rate of its
-// radius along the normal
+// a ball that moves and grows: velocity of its center, and the rate of its radius along the normal
 TEST(Motion, BallThatMovesAndGrows)
 {
   const double dt = 1.0e-4, center[3] = {5.1, 4.9, 5.2}, V[3] = {0.5, 0.0, -0.3}, rate = 0.4;
@@ -1092,8 +1084,7 @@ TEST(Regions, SlipNormals)
   }
 }
 
-/** A block, 1 x 1, whose side is at a wall that is this many node spacings from a node, pulled
-   *  normal to or along the wall. */
+/** A block, 1 x 1, at a wall so many spacings from a node, pulled normal to or along the wall. */
 struct Pulled {
   std::vector<Scene::State> points;
   double force;
@@ -1127,8 +1118,7 @@ Pulled pull_at_wall(bool face, const std::string &kind, double h, double off, bo
 }
 
 // A region with slip or stick holds the surface of a body as a face of the box does, wherever both
-// are between nodes: stresses were wrong by up to seven times the pull when nodes inside the region
-// acted one by one
+// are between nodes (nodes inside, one by one, made stresses wrong by seven times the pull)
 void compare_with_faces(const std::string &kind)
 {
   const std::string at_rest = "fix solve all mpm/implicit static\ntimestep 1\nrun 2\n",
@@ -1163,8 +1153,7 @@ void compare_with_faces(const std::string &kind)
           }
         EXPECT_GT(largest, 0.5);
         EXPECT_NEAR(region.force, face.force, 1e-6);
-        // the sum of forces times places is volume times mean stress: that of the wall has no lever
-        // arm about its surface
+        // forces times places are volume times mean stress: that of the wall has no lever arm
         double sum = 0.0;
         for (const auto &point : region.points) sum += point.stress[along] / region.points.size();
         if (c.solve == at_rest) {
@@ -1313,9 +1302,8 @@ TEST(Regions, FastOnesAreReported)
     EXPECT_THAT(text(slow), ::testing::Not(HasSubstr("crosses")));
 }
 
-// A plate that pushes or pulls at a bar while it crosses planes of nodes: nodes inside left the bar
-// with 0.3 to 2.6 times its stress next to the plate, and let go of it after 0.8 of a cell when
-// they pulled
+// A plate that pushes or pulls at a bar while it crosses planes of nodes: nodes inside left 0.3 to
+// 2.6 times the stress next to it, and let go after 0.8 of a cell
 TEST(Regions, SlipHoldsWhereItMoves)
 {
   if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";
@@ -1394,8 +1382,7 @@ TEST(Regions, NoTrailBehindAMovingBody)
 
 /* ---------------------------------------------------------------------- ranks and restart */
 
-// Distances of a mesh: those of regions in general, and what walls take for material in front of
-// them
+// Distances of a mesh: those of regions in general, and what walls take for material before them
 SERIAL_TEST(MeshWall, Distances)
 {
   constexpr int n = 24;
@@ -1695,8 +1682,7 @@ TEST(TimeStep, PartsOfARunToATimeAreOneRun)
   }
 }
 
-// output of the last step, which is not a multiple of the interval, with what needs virials; a
-// warning before the end
+// output of the last step, off the interval, with what needs virials; a warning before the end
 TEST(TimeStep, TellsTheEndOfARun)
 {
   const ScratchFile log("log");

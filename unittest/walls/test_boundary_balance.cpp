@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 300
 
-// Walls that move, in each way in which they can: what they tell of force, torque, and work is what
-// the material gets.
+// Walls that move in each way that they can: force, torque, and work are what the material gets.
 
 #include "mpm_lammps.h"
 

@@ -4,8 +4,7 @@
 // labels: unit
 // mpi: 1 4
 
-// create_points ... cut yes: points at the surface of a region have the part of their cell that is
-// inside.
+// create_points ... cut yes: points at the surface of a region have the inner part of their cell.
 
 #include "body_testing.h"
 #include "mesh/stl_testing.h"
@@ -83,8 +82,7 @@ TEST(RegionCut, CentersAreThoseOfTheRegion)
   for (int d = 0; d < 3; d++) EXPECT_NEAR(moments[d], 8.0 / 15.0 * PI, 1.0e-3 * 8.0 / 15.0 * PI);
 }
 
-// A row of cells that ends somewhere in the last one: no point has less than a tenth of a cell, and
-// no volume is lost.
+// A row that ends somewhere in its last cell: no point below a tenth of a cell, no volume lost.
 TEST(RegionCut, LightPartsGoToANeighbor)
 {
   const struct {
@@ -142,8 +140,7 @@ TEST(RegionCut, AnyNumberOfRanks)
   }
 }
 
-// A ball hits a wall: no step is shorter than with whole points, it comes back as fast, and energy
-// does not grow.
+// A ball hits a wall: steps as with whole points, it comes back as fast, and energy does not grow.
 TEST(RegionCut, LightPointsAreStable)
 {
   double speed[2], step[2];
@@ -167,9 +164,8 @@ TEST(RegionCut, LightPointsAreStable)
               0.02 * speed[false]);
 }
 
-// A surface that is a thousand times as large as the box, such as one in millimeters: its cells
-// outside of the box, 1e9 of them, are not looked at. In the box are its corner, or its oblique
-// face, x + y + z = 1/2.
+// A surface a thousand times as large as the box, as one in millimeters: its 1e9 cells outside are
+// not looked at. In the box are its corner, or its oblique face, x + y + z = 1/2.
 TEST(RegionCut, OfALargeBodyOnlyThePartInTheBox)
 {
   const std::array<double, 3> o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};

@@ -37,9 +37,8 @@ struct Rest {
   double settled, weight;    // mean over the block; of the force on the plate
 };
 
-/** A block, 1 wide and 0.5 high, at rest on a plate of this thickness, whose upper face is at top,
- *  and which reaches this far beyond the block; in node spacings. The wall: made of the plate by
- *  these commands. */
+/** A block, 1 wide and 0.5 high, at rest on a plate of this thickness, upper face at top, that
+ *  reaches so far beyond it; in node spacings. The wall: made of the plate by these commands. */
 Rest rest(double h, double thickness, double top, double beyond, const std::string &kind,
           const std::string &wall = "", bool moves = false)
 {
@@ -119,8 +118,7 @@ TEST(ThinPlate, IsTheSameInAUnion)
     }
 }
 
-// A block that is thrown up leaves the plate freely: its other face, with the material behind it,
-// does not act.
+// A block that is thrown up leaves the plate freely: its other face does not act.
 TEST(ThinPlate, LetsGo)
 {
   constexpr double h = 0.05;
@@ -137,8 +135,7 @@ TEST(ThinPlate, LetsGo)
 }
 
 /** The force on a punch, 0.2 wide, that is pressed by 0.03 into a block of 2 x 0.5 on a smooth
- *  floor: height in node spacings, where its sides are between nodes, and the place of the surface
- *  between nodes. */
+ *  floor: height in spacings, places of sides and surface between nodes. */
 double punch(double h, double height, double side, double surface, const std::string &more = "")
 {
   const double top = 0.5 + surface * h, x = 1.0 + side * h;
@@ -290,8 +287,7 @@ TEST(ThinRegions, AreReportedOnce)
   }
 }
 
-// Another body is below the plate, next to it: lines hold the body on it, unless they see both
-// bodies
+// Another body is right below the plate: lines hold the body on it, unless they see both bodies
 TEST(ThinRegions, AreReportedWithWhatOtherRanksHave)
 {
   for (const std::string kind : {"stick", "slip"})
@@ -363,8 +359,7 @@ double tip(const double *x)
   return std::min(from(-1.0, 0.0, 1.0, 1.0), from(1.0, 1.0, 1.0, 0.0));
 }
 
-// Where the nearest surface is that of one part, and it has nothing to do with others, distances
-// are exact
+// Where the nearest surface is that of one part alone, distances are exact
 TEST(Surfaces, OfUnionsAndIntersections)
 {
   const std::string balls = "region a sphere -0.5 0 0 1\nregion b sphere 0.5 0 0 1.1\n";
@@ -446,8 +441,7 @@ TEST(Surfaces, OfSharpCones)
 }
 
 // In front of a smooth surface, the normal is the gradient of the distance. Where places on several
-// faces are as near, it points to none of them: on the axis of a cylinder, and at the same distance
-// from two faces inside.
+// faces are as near, it points to none of them: on the axis of a cylinder, between two faces.
 TEST(Surfaces, Normals)
 {
   constexpr double STEP = 1.0e-5;
@@ -493,8 +487,7 @@ TEST(Surfaces, Normals)
   EXPECT_NEAR(corner[1], std::sqrt(0.5), 1.0e-9);
 }
 
-// LAMMPS divides zero by zero for a cone with a radius of zero at an end. A cone with a tiny one is
-// the same wall.
+// LAMMPS divides zero by zero for a cone with a zero radius. One with a tiny one is the same wall.
 TEST(Cones, SharpEnds)
 {
   const auto speeds = [](const std::string &cone, const std::string &kind) {
@@ -593,8 +586,7 @@ TEST(Unions, In3d)
 /* ---------------------------------------------------------------------- walls that move */
 
 /** The way of a block, 0.8 x 0.3, along a wall with slip and friction 0.3 in 0.3 s, when gravity is
- *  at 30 degrees to it; the wall moves with this velocity, the block has the velocity of the last
- *  one at first. */
+ *  at 30 degrees to it; the wall has this velocity, the block that of the last one at first. */
 double way(double h, double top, const double *wall, const double *first)
 {
   const std::string friction = "fix w all mpm/boundary region wall slip friction ";
@@ -621,9 +613,8 @@ double way(double h, double top, const double *wall, const double *first)
 }
 
 // The block starts to slide when the wave of shear has the stress of friction (see
-// test_wall_rolling.cpp); on a belt that is faster than it, friction is along its motion. Where
-// nodes inside acted, the block on the wall that moves with it was 14 % too slow, and that on the
-// belt 6 % too fast.
+// test_wall_rolling.cpp); on a belt that is faster than it, friction is along its motion. With
+// nodes inside, the block on the wall was 14 % too slow, and on the belt 6 % too fast.
 TEST(MovingWall, BlocksSlide)
 {
   const double c = std::sqrt(1.5e6 / 1000), gt = g * 0.5, f = 0.3 * g * std::cos(M_PI / 6),

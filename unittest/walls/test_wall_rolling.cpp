@@ -122,8 +122,7 @@ SERIAL_TEST(RollingSphere, OnAFace)
                0.05, 0.0);
 }
 
-/** Points in n/2 rings, n of them along the diameter: squares of the same area around each, as a
- *  mesh. */
+/** Points in n/2 rings, n along the diameter: squares of the same area around each, as a mesh. */
 std::string rings(const double *center, int n)
 {
   std::vector<std::array<double, 2>> points;
@@ -354,9 +353,8 @@ double way_from_rest(const std::string &begin, int dim, const Incline &incline, 
   return run.variable("x") - x0;
 }
 
-/** Of an elastic block of this height and shear wave speed whose foot sticks until the wave that it
- *  sends has the stress of friction: this grows with the time, density c g sin t, up to mu density
- *  g height cos. */
+/** Of an elastic block of this height and shear wave speed whose foot sticks until its wave has the
+ *  stress of friction: this grows, density c g sin t, up to mu density g height cos. */
 double way_of_block(const Incline &incline, double height, double c, double time)
 {
   const double theta = incline.theta * M_PI / 180, gt = g * std::sin(theta),

@@ -4,8 +4,7 @@
 // labels: physics
 // mpi: 1 2
 
-// Keyword gain of fix mpm: energy that no work explains is told, and energy that work explains is
-// not.
+// Keyword gain of fix mpm: energy that no work explains is told, other energy is not.
 
 #include "bad_input_testing.h"
 #include "meshgrid/mesh_grid_testing.h"
@@ -18,8 +17,7 @@
 
 using namespace MPM_TEST;
 
-/** A block that moves through a periodic box, and gets a part of its kinetic energy out of
- *  nothing. */
+/** A block moves through a periodic box, and gets a part of its kinetic energy from nothing. */
 std::string drift(const char *gain)
 {
   return space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
@@ -75,8 +73,7 @@ TEST(EnergyWatch, TellsWhatIsGained)
 
 // A block of 4 by 6 cells swings on a floor between planes of nodes, which it is put on without its
 // weight, with 30 to 40 steps in a period. Its stored energy at the end of a step, and the kinetic
-// one of the middle, were up to 5 % of the energy in play; also in a run that begins in the middle
-// of a vibration
+// one of the middle, were up to 5 % of the energy in play; also in a run from its middle on
 TEST(EnergyWatch, VibrationsOfFewStepsAreNoGain)
 {
   struct {
@@ -103,8 +100,7 @@ TEST(EnergyWatch, VibrationsOfFewStepsAreNoGain)
 }
 
 // A wave of 12 cells that starts with velocities alone. The watch took it that there was less
-// stored energy a step before than at the start, where it is zero, which seemed to be a gain of up
-// to 3 %
+// stored energy a step before than at the start, where it is zero, a gain of up to 3 %
 TEST(EnergyWatch, WavesThatStartWithoutStrainAreNoGain)
 {
   for (const char *transfer : {"flip 1.0", "aflip 1.0", "flip 1.0 scheme musl"})
@@ -196,8 +192,7 @@ TEST(EnergyWatch, SeesAnUnstableCombination)
   EXPECT_EQ(stable.error(replaced(scene, "SHAPE", "shape quadratic")), "");
 }
 
-// Friction that holds sand at rest between two walls has work at the nodes next to them that
-// transfers give back
+// Friction that holds sand between two walls works at nodes next to them; transfers give it back
 TEST(EnergyWatch, IsSilentAtRest)
 {
   const std::string scene = plane("si", "f f", "0 1 0 1", 1, 0.05) +
@@ -323,8 +318,7 @@ TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
 }
 
 // What elements add to the forces on their nodes is the change of their stored energy, and no work
-// from outside. A bar that is let go with v = x and vibrates along its axis, until most of its
-// energy is stored
+// from outside. A bar vibrates from v = x until most of its energy is stored
 TEST(EnergyWatch, KnowsForcesOfElements)
 {
   const ScratchFile mesh("bar.msh", gmsh(QUADS, {8, 1, 0}, [](double x, double y, double) {

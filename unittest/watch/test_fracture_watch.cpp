@@ -4,8 +4,7 @@
 // labels: physics ranks
 // mpi: 1 2
 
-// Keyword apart of fix mpm: a solid whose points no longer share enough nodes is told of, and
-// nothing else is.
+// Keyword apart of fix mpm: a solid whose points share too few nodes is told of, nothing else.
 
 #include "bad_input_testing.h"
 
@@ -21,8 +20,7 @@ struct Told {
 };
 
 /** A block of points, two per cell and axis, flies apart along an axis with a linear velocity; it
- *  is so soft that nothing slows it down, but the strain in units of which stress counts is that of
- *  the stretch. */
+ *  is so soft that nothing slows it, but its strain is that of the stretch. */
 Told told_by(double stretch, const std::string &grid = "", const std::string &material = SOFT,
              double direction = 0.1, int axis = 0)
 {
@@ -81,8 +79,7 @@ TEST(FractureWatch, IsSilentWhereNothingBreaks)
   EXPECT_EQ(told_by(2.5, "apart ignore").warnings, 0);
   for (const char *grid : {"frame total", "shape cpdi", "shape cpdi2"})
     EXPECT_EQ(told_by(2.5, grid).warnings, 0) << grid;
-  // fluids and grains without cohesion part, and metal that is nearly molten: all its tension is
-  // pressure
+  // fluids and grains without cohesion part, and nearly molten metal: all its tension is pressure
   for (const char *material :
        {"eos linear 1e-4", "eos tait 1e-4 7 viscosity newtonian 1e-4", "drucker/prager 1e-4 0.3 30",
         "eos linear 1e-4 strength j2 1e-4 1e-9"})
