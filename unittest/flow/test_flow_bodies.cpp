@@ -18,8 +18,7 @@ double body(Scene &run, int k)
   return run.fix("body")->compute_vector(k);
 }
 
-/** A cylinder or sphere of radius 0.2 in a container of radius 0.47 that is full, released under
- *  gravity. */
+/** A cylinder or sphere of radius 0.2 in a full container of radius 0.47, released in gravity. */
 std::string gap(int dim, int n, double density, const char *units, double g, double g_body)
 {
   const char *const center = dim == 3 ? "0.503 0.511 0.49" : "0.503 0.511 0";

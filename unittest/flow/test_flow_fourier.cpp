@@ -60,8 +60,7 @@ std::string splashes()
   return wet;
 }
 
-// the transforms solve the equations themselves, with walls and periods of even and odd numbers of
-// cells
+// transforms solve the equations, with walls and periods of even and odd numbers of cells
 TEST(Fourier, OneIterationInFullBoxes)
 {
   for (const char *faces : {"p p", "f f", "p f", "f p"})

@@ -209,9 +209,8 @@ SERIAL_TEST(Tank, BearsWhatIsPoured)
               1.0, 0.02);
 }
 
-// A sheet of honey that hangs from its mouth: what has come by the time s bears its weight from
-// then on, and stretches by 4 mu (Trouton), so that it is 1/(1 - b s (t - s)) times as long at t, b
-// = rho g U/(4 mu)
+// A sheet of honey hangs from its mouth: what came at the time s bears its weight, and stretches by
+// 4 mu (Trouton), so that it is 1/(1 - b s (t - s)) times as long at t, b = rho g U/(4 mu)
 SERIAL_TEST(Sheet, HangsFromItsMouth)
 {
   constexpr double t = 40.0, U = 1.0, mu = 1000.0, b = 7.5e-4;

@@ -189,8 +189,7 @@ std::string column(const std::string &options, double fraction, double max)
                 fraction, max);
 }
 
-/** Largest relative growth of the energy of points in a step; and the most iterations for pressure
- *  and stresses. */
+/** Largest relative growth of energy in a step; most iterations for pressure and stresses. */
 double energy_growth(Scene &run, int nsteps, double *iterations)
 {
   double before = 1e30, most = 0.0;
@@ -306,8 +305,7 @@ SERIAL_TEST(Shear, Couette)
         }
 }
 
-// explicit steps, from rest; a tenth of the largest viscosity over density limits them as it does
-// one liquid
+// explicit steps, from rest: a tenth of the largest viscosity over density limits them
 SERIAL_TEST(Shear, ExplicitCouette)
 {
   constexpr double speed = 1e-9;
@@ -422,8 +420,7 @@ double growth_rate(double k, double g, const double *rho, const double *mu)
   return low;
 }
 
-// A heavy liquid above a light one whose viscosity is the same per density, or a tenth: waves grow
-// as they should.
+// A heavy liquid above a light one of the same viscosity per density, or a tenth.
 SERIAL_TEST(Shear, GrowthOfWaves)
 {
   constexpr int N = 16;

@@ -258,8 +258,7 @@ fix g all gravity 3 vector 0 -1 0
 timestep 0.001
 run 5
 )");
-  // fix gravity has the unit of force over mass; below the end of the mouth there is a node that is
-  // free to fall
+  // fix gravity has the unit of force over mass; below the mouth is a node that can fall
   const double weight = 3000.0 * 3.0;
   EXPECT_NEAR(run.fix("in")->compute_vector(10) / weight, 1.0, 1e-3);
   EXPECT_NEAR(run.fix("in")->compute_vector(9), 0.0, 1e-9 * weight);
@@ -278,8 +277,7 @@ fix walls all mpm/boundary xlo xhi ylo yhi slip
 timestep 1.3e-5
 run 39
 )");
-  // in this step the third layer has come; all of these are at least a cell and a half from the end
-  // of the mouth
+  // in this step the third layer comes; all are at least a cell and a half from the mouth
   const double pressure = 1e5;
   int n = 0;
   for (const auto &s : run.gather())

@@ -127,8 +127,7 @@ INSTANTIATE_TEST_SUITE_P(All, BadFiles, ::testing::ValuesIn(formats()), [](const
   return info.param.name;
 });
 
-/** What a reader says to a file, empty: it reads it. Any other exception or a signal ends the
- *  test. */
+/** What a reader says to a file; empty: it reads it. Other exceptions end the test. */
 std::string said(const Format &format, const std::string &text)
 {
   const ScratchFile file(format.name.find("Obj") == 0 ? "bad.obj" : "bad", text);

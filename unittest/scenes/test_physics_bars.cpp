@@ -112,9 +112,8 @@ TEST_P(SinglePoint, TenPeriods)
   if (GetParam() == std::string("usl")) {
     // the strain follows the node, whose velocity changes by 1/N = 2 times that of the point: this
     // damps, e' = v - (1/N - 1) dt E e, E/E0 = exp(-(1/N - 1) dt E t) = 0.674 after ten periods.
-    // The velocity is then off by 18 %, and the 0.31 % of the other schemes cannot hold: what must
-    // be is the recursion of these two numbers, to the third order of the strain of a step, 1e-4,
-    // times 1e4 steps
+    // The velocity is off by 18 %: what must be is the recursion of these two numbers, to the third
+    // order of the strain of a step, 1e-4, times 1e4 steps
     EXPECT_LT(measured("A1 error against the recursion of USL", error_usl / 0.1), 1.0e-8);
     EXPECT_NEAR(energy_min, exp(-1.0e-3 * 4.0 * PI * PI * 10.0), 0.01);
     EXPECT_LT(energy_max, 1.0 + 1.3 * 0.00315);

@@ -42,9 +42,8 @@ TEST(SimpleShear, OfAHardeningMetal)
 
 // A column under its own weight (A. G. Greenhill, Proc. Camb. Phil. Soc. 4, 65 (1881)) buckles at
 //   rho g A L^3/(E I) = 7.837
-// and vibrates below that with a frequency whose square falls with g in proportion, but for less
-// than a percent of that without weight. Plane strain, E/(1 - nu^2), a tenth as thick as high, four
-// cells across.
+// and vibrates below that with a frequency whose square falls with g in proportion, but for a
+// percent of that without weight. Plane strain, E/(1 - nu^2), a tenth as thick, four cells across.
 static std::vector<std::array<double, 2>> sway(double share, double until)
 {
   const double E = 2e7 / (1.0 - 0.09), g = share * 7.837 * E * 0.01 / 12.0 / 1000.0;

@@ -48,8 +48,7 @@ Spalled spall(const std::string &options, double h)
         v += run.v()[i][0];
         n++;
       }
-    // the peak arrives at 0.5, the signal of the crack at 1.1; after that the layer that has come
-    // off swings
+    // the peak arrives at 0.5, the signal of the crack at 1.1; then the layer swings
     if (run.time() > 0.7) least = std::min(least, v / n);
     if (depth > 0.0) return;
     double broken = 0.0, sum = 0.0;

@@ -41,8 +41,7 @@ TEST(StiffnessRatio, PulseReturns)
   run.set_velocity([&](const double *x, double *v) {
     v[0] = 2.0 * (x[0] < soft ? shape(x[0]) : 0.0);
   });
-  // from rest two pulses of half of this go both ways; the left one returns from the free end with
-  // the other sign
+  // two pulses of half of this go both ways; the left one returns with the other sign
   run.each_step([&](double **force) {
     double stress = 0.0, n = 0.0;
     for (int i = 0; i < run.n(); i++) {

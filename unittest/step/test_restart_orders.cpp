@@ -319,8 +319,7 @@ TEST(RestartOrders, GrainsGoOnAsTheyWere)
       EXPECT_THAT(found.error + found.warnings, ContainsRegex(warning)) << text;
   }
 
-  // LAMMPS's files do not have the cutoffs of granular, which are anything then: too small, or
-  // large enough
+  // LAMMPS's files lack the cutoffs of granular, which may be too small, or large enough
   const auto no_pair = run.go_on("", lists + mine + move + wall + exclude);
   if (!no_pair.identical)
     EXPECT_THAT(no_pair.error, HasSubstr("give pair_style and pair_coeff again"));

@@ -96,8 +96,7 @@ struct TileShape {
   int reals;
 };
 
-/** Expects that prefetch, flush, load, and load_mean move random boxes of a tile to blocks and
- *  back. */
+/** Expects prefetch, flush, load, load_mean to move random boxes of a tile to blocks and back. */
 inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileShape &t)
 {
   const int side = MPM_NS::block_side(t.dim), shift = side - t.margin, nreal = kernels.nreal;
