@@ -757,6 +757,12 @@ inline std::vector<std::string> lines_that_say(const std::string &commands,
   return lines;
 }
 
+/** How many lines of the log of these commands contain these words. */
+inline int times_said(const std::string &commands, const std::string &words)
+{
+  return (int) lines_that_say(commands, words).size();
+}
+
 /** The message of the error that an input gives; empty: no error. */
 inline std::string error_of(const std::string &input)
 {

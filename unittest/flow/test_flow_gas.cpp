@@ -36,8 +36,7 @@ double frequency(const std::vector<double> &t, const std::vector<double> &of)
 std::string slug(int dim, int n, double offset, const std::string &units = "lj")
 {
   const double h = 0.2 / n;
-  return box(dim, units, dim == 3 ? "f f f" : "f f", dim == 3 ? "0 1 0 0.2 0 0.2" : "0 1 0 0.2", 1,
-             0.5 * h) +
+  return box(dim, units, "f f f", "0 1 0 0.2 0 0.2", 1, 0.5 * h) +
       strprintf("region w block %.17g %.17g INF INF INF INF\n", 0.3 + offset * h,
                 0.7 + offset * h) +
       strprintf("create_points 1 region w spacing %.17g outside ignore\n", 0.5 * h);
@@ -48,9 +47,7 @@ std::string shell(int dim, int n)
 {
   const double h = 1.0 / n;
   const std::string third = dim == 3 ? "+z^2" : "", up = dim == 3 ? "v_uz" : "NULL";
-  std::string text =
-      box(dim, "lj", dim == 3 ? "f f f" : "f f",
-          dim == 3 ? "-2.5 2.5 -2.5 2.5 -2.5 2.5" : "-2.5 2.5 -2.5 2.5", 1, 0.5 * h) +
+  std::string text = box(dim, "lj", "f f f", "-2.5 2.5 -2.5 2.5 -2.5 2.5", 1, 0.5 * h) +
       "region o sphere 0.013 0.007 0 2\nregion i sphere 0.013 0.007 0 1 side out\n"
       "region w intersect 2 o i\n" +
       strprintf("create_points 1 region w spacing %.17g outside ignore\n", 0.5 * h) +
@@ -339,8 +336,7 @@ TEST(Gas, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
     const double h = dim == 2 ? 0.05 : 0.1;
-    const auto scene = box(dim, "lj", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.5" : "0 1 0 1", 1, 0.02) +
+    const auto scene = box(dim, "lj", "f f p", "0 1 0 1 0 0.5", 1, 0.02) +
         "region air sphere 0.5 0.4 0.25 0.2 side out\nregion low block INF INF INF 0.8 INF INF\n"
         "region post block 0.87 INF INF INF INF INF\nregion free block 0.87 INF INF INF INF INF "
         "side out\n"

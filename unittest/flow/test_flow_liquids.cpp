@@ -224,8 +224,7 @@ std::string between(double h, const std::string &fixes)
 SERIAL_TEST(Liquids, AtRest)
 {
   for (const int dim : {2, 3}) {
-    Scene run(box(dim, "si", dim == 3 ? "f f p" : "f f", dim == 3 ? "0 1 0 1 0 0.2" : "0 1 0 1", 1,
-                  0.01) +
+    Scene run(box(dim, "si", "f f p", "0 1 0 1 0 0.2", 1, 0.01) +
               "region d block INF INF INF 0.8375 INF INF\ncreate_points 1 region d spacing 0.025\n"
               "region high block INF INF 0.43 INF INF INF\ngroup oil region high\n"
               "fix w all mpm/incompressible 0.05 1000 liquid oil 850 tolerance 1e-12\n"
@@ -542,8 +541,7 @@ TEST(Liquids, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
     const double h = dim == 2 ? 0.05 : 0.1;
-    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+    const auto scene = box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
         "region d block INF INF INF 0.81 INF INF\n" +
         strprintf("create_points 1 region d spacing %g\n", 0.5 * h) +
         "region low block INF 0.4 INF 0.6 INF INF\ngroup low region low\ngroup high subtract all "
@@ -589,7 +587,6 @@ SERIAL_TEST(Liquids, BadInput)
   // a group that is empty, as its points were made later, is told of once; one that has some is not
   const std::string last = " 800\ntimestep 0.001\nrun 1\nrun 1\n",
                     say = "keyword liquid has no points of this fix";
-  EXPECT_EQ(lines_that_say(plain + "group oil empty\n" + fix + "liquid oil" + last, say).size(),
-            1u);
-  EXPECT_EQ(lines_that_say(plain + "group oil id 1\n" + fix + "liquid oil" + last, say).size(), 0u);
+  EXPECT_EQ(times_said(plain + "group oil empty\n" + fix + "liquid oil" + last, say), 1);
+  EXPECT_EQ(times_said(plain + "group oil id 1\n" + fix + "liquid oil" + last, say), 0);
 }

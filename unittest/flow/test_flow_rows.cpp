@@ -37,7 +37,7 @@ struct Cells {
   std::vector<double> diagonal, weight;    // by places
 
   Cells(int dim, int n, const std::string &faces, double outside) :
-      scene(box(dim, "si", faces, dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1, 0.02) +
+      scene(box(dim, "si", faces, "0 1 0 1 0 1", 1, 0.02) +
             strprintf("create_points 1 box spacing %.17g\nrun 0\n", 1.0 / n)),
       cells(scene.lmp, {dim, 1.0 / n, {0.0, 0.0, 0.0}, {false, false, false}, {1, 1, 1}}, 1),
       rows(scene.lmp, cells)

@@ -309,8 +309,7 @@ TEST(FlowSolids, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
     const double h = dim == 2 ? 0.05 : 0.1;
-    const auto scene = box(dim, "lj", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+    const auto scene = box(dim, "lj", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
         "region d block INF INF INF 0.81 INF INF\n" +
         strprintf("create_points 1 region d spacing %g\n", 0.5 * h) +
         "region low block INF 0.4 INF 0.6 INF INF\ngroup low region low\nvelocity low set 1 0.5 "

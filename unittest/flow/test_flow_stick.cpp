@@ -64,8 +64,7 @@ double flow_through_cylinders(int n)
 /** A block of honey that falls into a bowl or, in 3d, onto an inclined plane. */
 std::string honey(int dim, double h)
 {
-  return box(dim, "si", dim == 3 ? "f f p" : "f f", dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1,
-             0.02) +
+  return box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
       (dim == 3 ? "region bowl plane 0.5 0.25 0 0.3 -1 0\nregion in plane 0.5 0.251 0 -0.3 1 0\n"
                 : "region bowl sphere 0.503 0.511 0 0.45 side out\n"
                   "region in sphere 0.503 0.511 0 0.449\n") +

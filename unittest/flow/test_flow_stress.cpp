@@ -142,8 +142,7 @@ SERIAL_TEST(Film, SurfaceAnywhere)
   for (const int dim : {2, 3})
     for (const int rows : {40, 41, 42, 43}) {
       const double H = 0.0125 * rows, g = 1e-5;
-      Scene run(box(dim, "si", dim == 3 ? "p f p" : "p f",
-                    dim == 3 ? "0 0.1 0 1 0 0.1" : "0 0.1 0 1", 1, 0.02) +
+      Scene run(box(dim, "si", "p f p", "0 0.1 0 1 0 0.1", 1, 0.02) +
                 strprintf("region w block INF INF 0 %.17g INF INF\n", H + 1e-6) +
                 "create_points 1 region w spacing 0.0125\nfix w all mpm/incompressible 0.025 1 "
                 "viscosity 1 implicit yes wall ylo stick\n" +
@@ -181,8 +180,7 @@ SERIAL_TEST(Blob, TurnsRigidly)
   for (const int dim : {2, 3}) {
     double left[2];
     for (const int k : {0, 1}) {
-      Scene run(box(dim, "si", dim == 3 ? "p p p" : "p p",
-                    dim == 3 ? "-0.5 0.5 -0.5 0.5 -0.5 0.5" : "-0.5 0.5 -0.5 0.5", 1, 0.02) +
+      Scene run(box(dim, "si", "p p p", "-0.5 0.5 -0.5 0.5 -0.5 0.5", 1, 0.02) +
                 "region b block -0.31 0.27 -0.2 0.17 " + (dim == 3 ? "-0.2 0.2" : "INF INF") +
                 "\n" +
                 "create_points 1 region b spacing 0.03125\n"
@@ -227,8 +225,7 @@ SERIAL_TEST(Blob, EnergyNeverGrows)
   for (const int dim : {2, 3})
     for (const double mu : {1.0, 1e2, 1e4}) {
       Scene run(
-          box(dim, "si", dim == 3 ? "f f f" : "f f", dim == 3 ? "0 1 0 1 0 0.25" : "0 1 0 1", 1,
-              0.02) +
+          box(dim, "si", "f f f", "0 1 0 1 0 0.25", 1, 0.02) +
           "region b block 0.2 0.8 INF 0.7 INF INF\ncreate_points 1 region b spacing 0.03125\n"
           "variable vx atom 0.1*sin(20*y)+0.2*cos(31*x)\nvariable vy atom 0.3*sin(17*x+9*y)\n"
           "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000 wall ylo stick "
@@ -273,8 +270,7 @@ SERIAL_TEST(Units, Viscosity)
 TEST(Block, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
-    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+    const auto scene = box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
         "region water block INF 0.4 0 0.61 INF INF\n" +
         strprintf("create_points 1 region water spacing %g\n", dim == 3 ? 0.05 : 0.025);
     const auto fixes =

@@ -19,8 +19,7 @@ std::string drop(int dim, int n, double eps, double x, double y, double mu)
   const double h = 1.0 / n, c = 1.0 / std::sqrt(1.0 + 0.5 * eps * eps);
   const auto where = strprintf("sqrt((x-(%.17g))^2+(y-(%.17g))^2)", x, y);
   const auto two = strprintf("((x-(%.17g))^2-(y-(%.17g))^2)", x, y);
-  return box(dim, "lj", dim == 3 ? "p p p" : "p p",
-             dim == 3 ? "-1.5 1.5 -1.5 1.5 -1.5 1.5" : "-1.5 1.5 -1.5 1.5", 1, 0.5 * h) +
+  return box(dim, "lj", "p p p", "-1.5 1.5 -1.5 1.5 -1.5 1.5", 1, 0.5 * h) +
       strprintf("create_points 1 box spacing %.17g\n", 0.5 * h) +
       (dim == 3 ? strprintf("variable out atom sqrt((x-(%.17g))^2+(y-(%.17g))^2+z^2)>1\n", x, y)
                 : "variable out atom " + where + strprintf(">%.17g*(1+%.17g*", c, eps) + two +
@@ -169,8 +168,7 @@ SERIAL_TEST(Units, Pressure)
 TEST(Drop, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
-    const auto scene =
-        box(dim, "lj", dim == 3 ? "p f p" : "p f", dim == 3 ? "0 2 0 2 0 1" : "0 2 0 2", 1, 0.02) +
+    const auto scene = box(dim, "lj", "p f p", "0 2 0 2 0 1", 1, 0.02) +
         "region d block 1.2 1.8 INF 0.9 " + (dim == 3 ? "0.2 0.8" : "INF INF") + "\n" +
         strprintf("create_points 1 region d spacing %g\n", dim == 3 ? 0.1 : 0.05) +
         "variable u atom 0.5+y\nvelocity all set v_u 0 0\n";

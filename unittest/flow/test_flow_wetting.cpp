@@ -183,8 +183,7 @@ TEST(Sessile, RanksAndRestart)
   for (const int dim : {2, 3})
     for (const bool region : {false, true}) {
       const double h = dim == 2 ? 0.05 : 0.1;
-      const auto scene = box(dim, "lj", dim == 3 ? "f f p" : "f f",
-                             dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+      const auto scene = box(dim, "lj", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
           "region up plane 0.5 0.21 0 0.2 1 0\nregion part block INF 0.63 INF 0.5 INF INF\n"
           "region d intersect 2 up part\n" +
           strprintf("create_points 1 region %s spacing %g\n", region ? "d" : "part", 0.5 * h);

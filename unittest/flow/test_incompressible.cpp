@@ -315,8 +315,7 @@ SERIAL_TEST(Film, SurfaceAnywhere)
 {
   for (const int dim : first_of(1, {2, 3}))
     for (const double H : first_of(2, {0.523, 0.5375, 0.5, 0.5125, 0.527})) {
-      Scene run(box(dim, "si", dim == 3 ? "p f p" : "p f",
-                    dim == 3 ? "0 0.1 0 0.7 0 0.1" : "0 0.1 0 0.7", 1, 0.02) +
+      Scene run(box(dim, "si", "p f p", "0 0.1 0 0.7 0 0.1", 1, 0.02) +
                 strprintf("region w block INF INF 0 %.17g INF INF\n", H) +
                 "create_points 1 region w spacing 0.025 cut yes\n"
                 "fix w all mpm/incompressible 0.05 1 viscosity 1 wall ylo stick\n" +
@@ -577,8 +576,7 @@ TEST(Solver, SameOnRanks)
 {
   for (const char *water : {"plane 0.5 0.45 0 0.3 -1 0", "block INF INF INF INF INF INF"})
     for (const int dim : {2, 3}) {
-      const auto scene = box(dim, "si", dim == 3 ? "f f f" : "f f",
-                             dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1, 0.02) +
+      const auto scene = box(dim, "si", "f f f", "0 1 0 1 0 1", 1, 0.02) +
           "variable u atom y-0.5\nvariable v atom 0.5-x\nregion w " + water + "\n" +
           strprintf("create_points 1 region w spacing %g\n", dim == 3 ? 0.05 : 0.0125) +
           strprintf("fix w all mpm/incompressible %g 1000 tolerance 1e-8\n",
@@ -660,9 +658,8 @@ SERIAL_TEST(Drop, InFlight)
 {
   for (const int dim : {2, 3})
     for (const bool spread : {true, false}) {
-      Scene run(box(dim, "si", dim == 3 ? "p p p" : "p p", dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1,
-                    0.02) +
-                "region drop sphere 0.52 0.47 " + (dim == 3 ? "0.5" : "0") + " 0.25\n" +
+      Scene run(box(dim, "si", "p p p", "0 1 0 1 0 1", 1, 0.02) + "region drop sphere 0.52 0.47 " +
+                (dim == 3 ? "0.5" : "0") + " 0.25\n" +
                 "create_points 1 region drop spacing 0.03125\n"
                 "variable vx atom -0.5*(y-0.47)+0.3\nvariable vy atom 0.5*(x-0.52)\n"
                 "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000" +
@@ -763,8 +760,7 @@ SERIAL_TEST(Units, PressureAndForce)
 TEST(Block, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
-    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+    const auto scene = box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
         "region water block INF 0.4 0 0.61 INF INF\n" +
         strprintf("create_points 1 region water spacing %g\n", dim == 3 ? 0.05 : 0.025);
     const auto fixes =
@@ -840,16 +836,13 @@ SERIAL_TEST(Incompressible, BadInput)
           fix + "0.1 1000",
       "requires material points");
   expect_error(plane("si", "s f", "0 1 0 1", 1, 0.02) + fix + "0.1 1000", "shrink-wrapped");
-  EXPECT_EQ(lines_that_say(plain +
-                               "region stone sphere 0.5 0.5 0 0.2\ndelete_atoms region stone\n" +
-                               fix + "0.1 1000 region stone sharp no\ntimestep 0.01\nrun 1\n",
-                           "ERROR")
-                .size(),
-            0u);    // what is not asked for
+  EXPECT_EQ(times_said(plain + "region stone sphere 0.5 0.5 0 0.2\ndelete_atoms region stone\n" +
+                           fix + "0.1 1000 region stone sharp no\ntimestep 0.01\nrun 1\n",
+                       "ERROR"),
+            0);    // what is not asked for
   for (const auto &[h, warnings] : {std::pair{"0.05", 0u}, std::pair{"0.025", 1u}})
-    EXPECT_EQ(lines_that_say(plain + fix + h + " 1000\ntimestep 0.01\nrun 1\nrun 1\n",
-                             "are larger than a cell")
-                  .size(),
+    EXPECT_EQ(times_said(plain + fix + h + " 1000\ntimestep 0.01\nrun 1\nrun 1\n",
+                         "are larger than a cell"),
               warnings);
 }
 
@@ -967,17 +960,13 @@ SERIAL_TEST(Incompressible, Others)
       "group left region left\ngroup right region right\n"
       "fix w left mpm/incompressible 0.1 1000\ntimestep 1e-5\n";
   expect_error(scene + "fix v right mpm/incompressible 0.1 900\nrun 1\n", "go through each other");
-  EXPECT_EQ(lines_that_say(scene + "run 1\n", "as neither feels").size(), 0u);
+  EXPECT_EQ(times_said(scene + "run 1\n", "as neither feels"), 0);
   EXPECT_EQ(
-      lines_that_say(scene + "run 1\n", " 200 material points belong to no fix mpm/incompressible")
-          .size(),
-      1u);
-  EXPECT_EQ(lines_that_say(scene + "fix v right nve\nrun 1\n", "belong to no fix").size(), 0u);
-  EXPECT_EQ(
-      lines_that_say(scene +
-                         "fix grid right mpm 0.1\nfix m right mpm/material density 1000 linear "
-                         "1e5 0.3\nrun 1\nrun 1\n",
-                     "as neither feels")
-          .size(),
-      1u);
+      times_said(scene + "run 1\n", " 200 material points belong to no fix mpm/incompressible"), 1);
+  EXPECT_EQ(times_said(scene + "fix v right nve\nrun 1\n", "belong to no fix"), 0);
+  EXPECT_EQ(times_said(scene +
+                           "fix grid right mpm 0.1\nfix m right mpm/material density 1000 linear "
+                           "1e5 0.3\nrun 1\nrun 1\n",
+                       "as neither feels"),
+            1);
 }

@@ -305,11 +305,11 @@ TEST(RegionLeaky, SaysWhatIsWrong)
       closed("closed.stl", text_of(box({0, 0, 0}, {1, 1, 1})));
   const std::string input = space_of_points + "region r mpm/mesh ",
                     end = " 1.0 0 0 0 surface leaky\n";
-  EXPECT_EQ(lines_that_say(input + file.name + end, "3 open edges around 1 hole, ").size(), 1u);
-  EXPECT_EQ(lines_that_say(input + file.name + end, "1 triangles turned, 0 left out").size(), 1u);
-  EXPECT_EQ(lines_that_say(input + file.name + end, "is leaky: look at the region").size(), 1u);
-  EXPECT_EQ(lines_that_say(input + closed.name + end, "its surface is closed").size(), 1u);
-  EXPECT_EQ(lines_that_say(input + closed.name + end, "WARNING").size(), 0u);
+  EXPECT_EQ(times_said(input + file.name + end, "3 open edges around 1 hole, "), 1);
+  EXPECT_EQ(times_said(input + file.name + end, "1 triangles turned, 0 left out"), 1);
+  EXPECT_EQ(times_said(input + file.name + end, "is leaky: look at the region"), 1);
+  EXPECT_EQ(times_said(input + closed.name + end, "its surface is closed"), 1);
+  EXPECT_EQ(times_said(input + closed.name + end, "WARNING"), 0);
 }
 
 TEST(RegionLeaky, RefusesMistakes)

@@ -695,12 +695,11 @@ SERIAL_TEST(Plug, SlowedByTheTransferIsTold)
 {
   const auto told = [](double k, const std::string &options) {
     const Column c = plug(k, options);
-    return lines_that_say(c.text() + "fix step all mpm/dt 0.4\nrun 2\n", "slows the water down")
-        .size();
+    return times_said(c.text() + "fix step all mpm/dt 0.4\nrun 2\n", "slows the water down");
   };
-  EXPECT_EQ(told(5.0e-2, ""), 1u);
-  EXPECT_EQ(told(5.0e-2, "transfer aflip 1.0"), 0u);
-  EXPECT_EQ(told(1.0e-3, ""), 0u);
+  EXPECT_EQ(told(5.0e-2, ""), 1);
+  EXPECT_EQ(told(5.0e-2, "transfer aflip 1.0"), 0);
+  EXPECT_EQ(told(1.0e-3, ""), 0);
 }
 
 // A pond sinks into a dry bed. Behind a front without suction pores are full: n dL/dt = k (H - n L
@@ -739,8 +738,7 @@ SERIAL_TEST(Pond, SinksIntoADryBed)
 static std::string slump(int dim, const std::string &options = "transfer apic")
 {
   const std::string deep = dim == 3 ? "0 4" : "INF INF";
-  return box(dim, "lj", dim == 3 ? "p f p" : "p f p", dim == 3 ? "0 10 0 8 0 4" : "0 10 0 8", 2,
-             0.3) +
+  return box(dim, "lj", "p f p", "0 10 0 8 0 4", 2, 0.3) +
       "group soil empty\ngroup water empty\nfix s soil mpm 1.0 " + options +
       "\nfix w water mpm 1.0 " + options + "\nregion heap block 2 5 0 5 " + deep +
       "\nregion wet block 2 5 0 2 " + deep + "\nregion left block 0 2 0 2 " + deep +
@@ -953,21 +951,19 @@ SERIAL_TEST(Share, IsNoOverlapWithTheSoilAlone)
 SERIAL_TEST(Share, ThatIsNotThePorosityIsTold)
 {
   const auto told = [](const std::string &scene, const char *share, double height) {
-    return lines_that_say(replaced(scene, height > 0.0 ? "share 0.4" : "share 0.5", share) +
-                              "timestep 1e-6\nrun 2\n",
-                          "times the volume of the pores")
-        .size();
+    return times_said(replaced(scene, height > 0.0 ? "share 0.4" : "share 0.5", share) +
+                          "timestep 1e-6\nrun 2\n",
+                      "times the volume of the pores");
   };
   for (const double height : {0.3, 0.5, 0.9})
     for (const double offset : {0.0, 0.3}) {
       const auto scene = bed(2, 0.1, height, "", offset);
       for (const char *share : {"share 0.1", "share 0.4", "share 0.45"})
-        EXPECT_EQ(told(scene, share, height), 0u);
-      for (const char *share : {"share 0.6", "share 0.9"})
-        EXPECT_EQ(told(scene, share, height), 1u);
+        EXPECT_EQ(told(scene, share, height), 0);
+      for (const char *share : {"share 0.6", "share 0.9"}) EXPECT_EQ(told(scene, share, height), 1);
     }
   for (const char *share : {"share 0.3", "share 0.5"})
-    EXPECT_EQ(told(slump(2) + stuff, share, 0.0), 0u);
+    EXPECT_EQ(told(slump(2) + stuff, share, 0.0), 0);
 }
 
 SERIAL_TEST(Mixture, RefusesBadInput)

@@ -88,7 +88,7 @@ TEST(Wall, LeaksAreTold)
     for (const double cells : {1.0, 2.0, 3.0}) {
       const double a = 0.05 * cells;
       EXPECT_EQ(
-          lines_that_say(
+          times_said(
               plane("si", "f p", "-1 1 0 0.4", 2, 0.03) +
                   strprintf("region left block INF %g INF INF INF INF\n", -a) +
                   strprintf("region right block %g INF INF INF INF INF\n", a) +
@@ -101,9 +101,8 @@ TEST(Wall, LeaksAreTold)
                   (heat ? " thermal conducting 1000 293 2\nfix heat all mpm/heat\n"
                         : "\nfix water all mpm/pore 2.2e7 1000 1 soil m 0.4 constant 1e-7\n") +
                   "fix b dry mpm/material density 2000 linear 1e7 0.3\ntimestep 1e-6\nrun 1\n",
-              heat ? "so thin that heat leaks through it" : "so thin that water leaks through it")
-              .size(),
-          cells < 3.0 ? 1u : 0u);
+              heat ? "so thin that heat leaks through it" : "so thin that water leaks through it"),
+          cells < 3.0 ? 1 : 0);
     }
 }
 

@@ -340,7 +340,7 @@ TEST(Rim, CracksAreTold)
             "0.3 soften energy 0.001\n"
             "velocity all ramp vx -0.05 0.05 x 0 12\ntimestep 0.01\nrun 150\nrun 10\n",
         "lost half of their stress");
-    EXPECT_EQ(said.size(), c.told ? 1u : 0u) << c.weak;
+    EXPECT_EQ(said.size(), c.told ? 1 : 0) << c.weak;
   }
 }
 
@@ -483,31 +483,27 @@ SERIAL_TEST(BadInput, IsRefused)
       "origin 0.25 0.25\ncreate_points 1 region l ppc 2 fix a\n"
       "create_points 2 region m ppc 2 fix b\ngroup a type 1\n"
       "group b type 2\n";
-  EXPECT_EQ(lines_that_say(apart + law + fix + "\nrun 1\n", "do not meet").size(), 1u);
+  EXPECT_EQ(times_said(apart + law + fix + "\nrun 1\n", "do not meet"), 1);
   // a column on a floor that only nodes outside of it know: its settlement is 4 to 12 % too large
   const auto layer = [](const std::string &shape, const char *region) {
-    return lines_that_say(plane("lj", "p f", "0 8 0 10", 2, 0.2) +
-                              lattices(2, shape, "", {"block 0 8 0 8 INF INF", region}) + law +
-                              "run 1\n",
-                          "fill one coarse cell")
-        .size();
+    return times_said(plane("lj", "p f", "0 8 0 10", 2, 0.2) +
+                          lattices(2, shape, "", {"block 0 8 0 8 INF INF", region}) + law +
+                          "run 1\n",
+                      "fill one coarse cell");
   };
   for (const std::string shape : {"quadratic", "cubic"}) {
-    EXPECT_EQ(layer(shape, "block 0 8 0 1 INF INF"), 1u);
-    EXPECT_EQ(layer(shape, "block 0 8 7 8 INF INF"), 1u);
-    EXPECT_EQ(layer(shape, "block 0 8 0 2 INF INF"), 0u);
-    EXPECT_EQ(layer(shape, "block 2 6 2 6 INF INF"), 0u);
-    EXPECT_EQ(layer(shape, "block 4 8 0 8 INF INF"), 0u);
+    EXPECT_EQ(layer(shape, "block 0 8 0 1 INF INF"), 1);
+    EXPECT_EQ(layer(shape, "block 0 8 7 8 INF INF"), 1);
+    EXPECT_EQ(layer(shape, "block 0 8 0 2 INF INF"), 0);
+    EXPECT_EQ(layer(shape, "block 2 6 2 6 INF INF"), 0);
+    EXPECT_EQ(layer(shape, "block 4 8 0 8 INF INF"), 0);
     // a lattice that fills one cell between two others
-    EXPECT_EQ(lines_that_say(plane("lj", "f f", "-1 13 -1 12", 3, 0.2) + nested(2, 3, shape, "") +
-                                 law + "run 1\n",
-                             "fill one coarse cell")
-                  .size(),
-              0u);
+    EXPECT_EQ(times_said(plane("lj", "f f", "-1 13 -1 12", 3, 0.2) + nested(2, 3, shape, "") + law +
+                             "run 1\n",
+                         "fill one coarse cell"),
+              0);
   }
   const std::string skin =
       replaced(scene("", "0.5 origin 0.25 0.25"), "atom_style mpm", "atom_style hybrid sphere mpm");
-  EXPECT_EQ(
-      lines_that_say(skin + fix + "\nfix s all mpm/surface\nrun 0\n", "count as surface").size(),
-      1u);
+  EXPECT_EQ(times_said(skin + fix + "\nfix s all mpm/surface\nrun 0\n", "count as surface"), 1);
 }

@@ -253,17 +253,16 @@ SERIAL_TEST(Rest, OnEachOther)
 SERIAL_TEST(Rest, OneFormOfTheStress)
 {
   const auto lines = [](const std::string &scene) {
-    return lines_that_say(scene, ": stress gradient, the default").size();
+    return times_said(scene, ": stress gradient, the default");
   };
   const auto parts = blocks("a body of the coarse lattice");
   const std::string scene = pile(parts, ""), rest = "fix rest all mpm/relax 1e-5\nrun 1\n";
-  EXPECT_EQ(lines(scene + rest), 0u);
-  EXPECT_EQ(lines(scene + "unfix c0\n" + rest), 3u);
+  EXPECT_EQ(lines(scene + rest), 0);
+  EXPECT_EQ(lines(scene + "unfix c0\n" + rest), 3);
   // a line tells what has ended it
-  EXPECT_EQ(lines_that_say(scene + "unfix c0\n" + rest + "fix c0 all mpm/contact A0 B0\nrun 1\n",
-                           "stress mls again, the default with fix mpm/contact")
-                .size(),
-            3u);
+  EXPECT_EQ(times_said(scene + "unfix c0\n" + rest + "fix c0 all mpm/contact A0 B0\nrun 1\n",
+                       "stress mls again, the default with fix mpm/contact"),
+            3);
 }
 
 // It slides on the other one: the force is the coefficient of friction times its weight
@@ -389,5 +388,5 @@ SERIAL_TEST(BadInput, IsRefused)
   const auto lines = words({{'A', 0, "0 6 0 4"}, {'A', 1, "0 6 4 8"}, {'B', 1, "6 12 5 8"}});
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("does not see it where it meets points of A0"));
-  EXPECT_EQ(words(blocks("a body of the coarse lattice")).size(), 0u);
+  EXPECT_EQ(words(blocks("a body of the coarse lattice")).size(), 0);
 }
