@@ -275,8 +275,7 @@ SERIAL_TEST(Spray, HasThePressureOfItsPocket)
               "fix w all mpm/incompressible 0.05 1000 gas 1.5e5 1.4 outside 1e5" +
               std::string(faces) +
               "\nfix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5 max 0.005\n"
-              "compute p all mpm/atom pressure\nthermo_style custom step\n"
-              "run 20\n");
+              "compute p all mpm/atom pressure\nthermo_style custom step\nrun 20\n");
     const double exact = *faces ? 0.0 : gas(run, HIGHEST) - 1e5;
     auto *pressure = run.lmp->modify->get_compute_by_id("p");
     pressure->compute_peratom();
@@ -338,9 +337,8 @@ TEST(Gas, RanksAndRestart)
     const double h = dim == 2 ? 0.05 : 0.1;
     const auto scene = box(dim, "lj", "f f p", "0 1 0 1 0 0.5", 1, 0.02) +
         "region air sphere 0.5 0.4 0.25 0.2 side out\nregion low block INF INF INF 0.8 INF INF\n"
-        "region post block 0.87 INF INF INF INF INF\nregion free block 0.87 INF INF INF INF INF "
-        "side out\n"
-        "region d intersect 3 air low free\n" +
+        "region post block 0.87 INF INF INF INF INF\n"
+        "region free block 0.87 INF INF INF INF INF side out\nregion d intersect 3 air low free\n" +
         strprintf("create_points 1 region d spacing %g\n", 0.5 * h) + "velocity all set 1 0 0\n";
     const auto fixes =
         strprintf("fix w all mpm/incompressible %g 1 tolerance 1e-12 gas 20 1.4 outside 10 open "

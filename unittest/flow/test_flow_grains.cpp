@@ -244,9 +244,8 @@ SERIAL_TEST(Grain, KeepsMomentum)
       Scene run(
           full(dim, "0 8 0 8 0 4", "p p p",
                grains + "set type 2 diameter 0.4 density" + (dim == 2 ? "/disc" : "") + " 3.0\n") +
-          "velocity water set 0.3 -0.2 0 units box\n"
-          "velocity grains create 0.5 4711 loop geom\nvelocity grains set 0.4 0.2 0 sum yes units "
-          "box\nvelocity grains set " +
+          "velocity water set 0.3 -0.2 0 units box\nvelocity grains create 0.5 4711 loop geom\n"
+          "velocity grains set 0.4 0.2 0 sum yes units box\nvelocity grains set " +
           (dim == 2 ? "NULL NULL 0" : "NULL NULL NULL") + "\n" + flow("", laws) +
           (dim == 2 ? discs : "fix move grains nve/sphere\n") + "timestep 0.05\nrun 0\n");
       const auto start = run.sums(), of_grains = run.sums(2);

@@ -273,8 +273,7 @@ SERIAL_TEST(Channel, BadInput)
 {
   const auto plain = plane("si", "f f", "0 1 0 1", 1, 0.02) +
       "region low block INF INF 0 0.4 INF INF\ncreate_points 1 region low spacing 0.025\n"
-      "region mouth block 0.4 0.6 0.7 0.9 INF INF\n"
-      "region short block 0.4 0.6 0 0.03 INF INF\n";
+      "region mouth block 0.4 0.6 0.7 0.9 INF INF\nregion short block 0.4 0.6 0 0.03 INF INF\n";
   const std::string flow = "fix w all mpm/incompressible 0.05 1000 ",
                     emit = "\nfix in all mpm/emit 1 region mouth velocity 0 -1 0";
   expect_refused(
@@ -295,9 +294,8 @@ SERIAL_TEST(Channel, BadInput)
       "timestep 0.001\nrun 1\n");
   // no surface, no way out
   const auto full = plane("si", "f f", "0 1 0 0.4", 1, 0.02) +
-      "region water block 0.2 1 INF INF INF INF\ncreate_points 1 region water spacing "
-      "0.025\nregion mouth block 0 0.2 0 0.4 INF INF\n"
-      "fix in all mpm/emit 1 region mouth velocity 0.1 0 0\nfix w all mpm/incompressible 0.05 "
-      "1000\n";
+      "region water block 0.2 1 INF INF INF INF\ncreate_points 1 region water spacing 0.025\n"
+      "region mouth block 0 0.2 0 0.4 INF INF\nfix in all mpm/emit 1 region mouth velocity 0.1 0 "
+      "0\nfix w all mpm/incompressible 0.05 1000\n";
   expect_refused(full, {{"timestep 0.01", "no room for what fix mpm/emit brings"}}, "run 2\n");
 }

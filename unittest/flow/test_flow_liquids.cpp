@@ -182,8 +182,7 @@ std::string column(const std::string &options, double fraction, double max)
 {
   return plane("si", "f f", "0 1 0 1", 1, 0.02) +
       "create_points 1 box spacing 0.025\nregion low block INF 0.4 INF 0.6 INF INF\n"
-      "group low region low\ngroup air subtract all low\n"
-      "fix w all mpm/incompressible 0.05 1000 " +
+      "group low region low\ngroup air subtract all low\nfix w all mpm/incompressible 0.05 1000 " +
       options +
       strprintf("\nfix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt %g max %g\nrun 0\n",
                 fraction, max);

@@ -26,8 +26,7 @@ std::string floor_and_ball(int dim, int n, const std::string &options)
   const double h = 1.0 / n;
   return box(dim, "si", "f f f", "0 1 0 1 0 1", 1, 0.02) +
       (dim == 3
-           ? "region ramp plane 0.5 0.2131 0.5 0.3 -1 0.1\n"
-             "region ball sphere 0.6 0.46 0.47 0.143\n"
+           ? "region ramp plane 0.5 0.2131 0.5 0.3 -1 0.1\nregion ball sphere 0.6 0.46 0.47 0.143\n"
            : "region ramp plane 0.5 0.2131 0 0.3 -1 0\nregion ball sphere 0.6 0.46 0 0.143\n") +
       "region solid union 2 ramp ball side out\nregion water block INF INF INF 0.7 INF INF\n"
       "region fluid intersect 2 water solid\n" +
@@ -187,9 +186,8 @@ TEST(Regions, RanksAndRestart)
     const auto fixes = "variable d equal 0.1*sin(5*step*0.004)\nregion ball sphere " + ball +
         " move v_d NULL NULL\nregion ramp plane 0.5 0.05 0 0.1 -1 0\n" +
         strprintf("fix w all mpm/incompressible %g 1000 ", h) +
-        "region ball region ramp reflect 0.5 tolerance 1e-11\nfix g all gravity 9.81 vector 0 -1 "
-        "0\n"
-        "timestep 0.004\n";
+        "region ball region ramp reflect 0.5 tolerance 1e-11\n"
+        "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.004\n";
     OnRanks run(scene + fixes, "run 30\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
     EXPECT_LT(measured("difference", run.difference()), 1e-9);
     for (int k = REGIONS; k < REGIONS + 6; k++) {
@@ -272,9 +270,8 @@ SERIAL_TEST(Regions, PointsStayOutside)
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) +
             "region dry block 0.35 0.65 0.2 0.3 INF INF side out\n"
             "region water block INF INF INF 0.6 INF INF\nregion fluid intersect 2 water dry\n"
-            "create_points 1 region fluid spacing 0.0125\n"
-            "variable angle equal ramp(0,3)\nregion blade block 0.35 0.65 0.2 0.3 INF INF rotate "
-            "v_angle 0.5 0.25 0 0 0 1\n"
+            "create_points 1 region fluid spacing 0.0125\nvariable angle equal ramp(0,3)\n"
+            "region blade block 0.35 0.65 0.2 0.3 INF INF rotate v_angle 0.5 0.25 0 0 0 1\n"
             "fix w all mpm/incompressible 0.025 1000 region blade\n"
             "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.002\n");
   const double volume = 0.57;
@@ -312,16 +309,14 @@ SERIAL_TEST(Regions, BadInput)
         "cannot be used with tension"},
        {"variable r equal 0.01\nregion b sphere 0.5 0.5 0 v_r\n" + fix + "region b",
         "must not change"},
-       {"variable d equal 0.0\nregion a sphere 0.51 0.51 0 0.01 move v_d NULL "
-        "NULL\nregion c sphere 0.41 0.41 0 "
-        "0.01\nregion b union 2 a c\n" +
+       {"variable d equal 0.0\nregion a sphere 0.51 0.51 0 0.01 move v_d NULL NULL\n"
+        "region c sphere 0.41 0.41 0 0.01\nregion b union 2 a c\n" +
             fix + "region b",
         "must not move"}},
       "timestep 0.001\nrun 1\n");
   const auto plate = plane("si", "f f", "0 1 0 1", 1, 0.02) +
       "region plate block 0.41 0.43 0.2 0.8 INF INF\nregion dry block 0.41 0.43 0.2 0.8 INF INF "
-      "side out\n"
-      "create_points 1 region dry spacing 0.05\n" +
+      "side out\ncreate_points 1 region dry spacing 0.05\n" +
       fix + "region plate\ntimestep 0.001\nrun 1\n";
   EXPECT_EQ(times_said(plate, "thinner than a node spacing"), 1);
   // a corner ends in a cell, but no flow goes through a block

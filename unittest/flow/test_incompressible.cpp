@@ -276,9 +276,8 @@ SERIAL_TEST(Plates, StressOfPoints)
   Scene deep(box(3, "si", "p p f", "0 0.4 0 0.4 0 1", 1, 0.02) +
              "create_points 1 box spacing 0.05\nvariable u atom 3*z\nvariable v atom -1*z\n"
              "velocity all set v_u v_v 0\nfix w all mpm/incompressible 0.1 1 viscosity 2 wall zlo "
-             "stick wall zhi "
-             "stick 3 -1 0\ncompute s all mpm/atom stress/*\ncompute low all reduce min c_s[*]\n"
-             "compute high all reduce max c_s[*]\ntimestep 0.0005\nrun 2\n");
+             "stick wall zhi stick 3 -1 0\ncompute s all mpm/atom stress/*\ncompute low all reduce "
+             "min c_s[*]\ncompute high all reduce max c_s[*]\ntimestep 0.0005\nrun 2\n");
   const double exact[] = {0.0, 0.0, 0.0, 0.0, 6.0, -2.0};
   for (int k = 0; k < 6; k++)
     for (const char *const of : {"c_low", "c_high"})
@@ -534,10 +533,9 @@ SERIAL_TEST(Tank, PoolsAndFullOnes)
 {
   Scene pools(plane("si", "f f", "0 1 0 1", 1, 0.02) +
               "region left block INF 0.3 0 0.4 INF INF\nregion right block 0.7 INF 0 0.2 INF INF\n"
-              "region drop block 0.5 0.525 0.8 0.825 INF INF\n"
-              "region all union 3 left right drop\ncreate_points 1 region all spacing 0.025\n"
-              "fix w all mpm/incompressible 0.05 1000\nfix g all gravity 9.81 vector 0 -1 0\n"
-              "timestep 0.005\nrun 1\n");
+              "region drop block 0.5 0.525 0.8 0.825 INF INF\nregion all union 3 left right drop\n"
+              "create_points 1 region all spacing 0.025\nfix w all mpm/incompressible 0.05 1000\n"
+              "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.005\nrun 1\n");
   EXPECT_GT(pools.fix("w")->compute_vector(WET), 50);
   for (int i = 0; i < pools.n(); i++)
     if (std::fabs(pools.x()[i][0] - 0.5) < 0.1) EXPECT_NEAR(pools.v()[i][1], -9.81 * 0.005, 1e-12);
@@ -720,9 +718,8 @@ SERIAL_TEST(Spread, IsInTheEnergy)
       for (const char *options : {"", " transfer pic", " reflect 0.5"}) {
         const auto energy = [&](const char *spread, double *own) {
           Scene run(box(dim, units, "f f f", "0 8 0 8 0 4", 1, 0.3) +
-                    "create_points 1 box spacing 0.5\n"
-                    "variable u atom 0.02*sin(3*x+y)\nvariable w atom 0.03*cos(x-2*y)\n"
-                    "displace_atoms all move v_u v_w 0\n"
+                    "create_points 1 box spacing 0.5\nvariable u atom 0.02*sin(3*x+y)\n"
+                    "variable w atom 0.03*cos(x-2*y)\ndisplace_atoms all move v_u v_w 0\n"
                     "variable vx atom 0.3*(y-4)\nvariable vy atom 0.3*(4-x)\n"
                     "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 1 2.0 spread " +
                     std::string(spread) + options +
@@ -767,8 +764,7 @@ TEST(Block, RanksAndRestart)
         strprintf("fix w all mpm/incompressible %g 1000 viscosity 0.5 wall ylo stick ",
                   dim == 3 ? 0.1 : 0.05) +
         "reflect 0.5 tolerance 1e-11\nfix g all gravity 9.81 vector 0 -1 0\n"
-        "fix dt all mpm/dt 0.2 max 0.05 every 2\n"
-        "timestep 0.005\n";
+        "fix dt all mpm/dt 0.2 max 0.05 every 2\ntimestep 0.005\n";
     OnRanks run(scene + fixes, "run 30\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
     EXPECT_LT(measured("difference", run.difference()), 1e-9);
     Continued again(scene + fixes, 12, "neighbor 0.02 bin\n" + fixes, 20);

@@ -778,8 +778,7 @@ TEST(Thermal, HeatOfFusion)
 // all viscous work becomes heat, whatever CHI
 TEST(Thermal, ViscousWorkHeats)
 {
-  Point p("density 1000 eos linear 1e9 viscosity newtonian 1000 "
-          "thermal adiabatic 4000 300 0.9");
+  Point p("density 1000 eos linear 1e9 viscosity newtonian 1000 thermal adiabatic 4000 300 0.9");
   const double rate = 1e3, time = 1e-3;
   steps(p, {0, 0.5 * rate, 0, 0.5 * rate, 0, 0, 0, 0, 0}, time / 10, 10);
   const double heat = 1000 * rate * rate * time;    // mu (2 D12)^2

@@ -176,9 +176,8 @@ SERIAL_TEST(Level, YieldsLikeItsColumn)
             "region lw block INF -10 INF INF INF INF\nregion rw block 10 INF INF INF INF INF\n"
             "fix floor all mpm/boundary ylo stick\n"
             "fix lw all mpm/boundary region lw slip field grid\n"
-            "fix rw all mpm/boundary region rw slip field grid\n"
-            "mpm_geostatic grid 0.5\nmpm_geostatic far 0.5\ntimestep 1e-3\n"
-            "unfix floor\nunfix lw\nunfix rw\n" +
+            "fix rw all mpm/boundary region rw slip field grid\nmpm_geostatic grid 0.5\n"
+            "mpm_geostatic far 0.5\ntimestep 1e-3\nunfix floor\nunfix lw\nunfix rw\n" +
             FREE + "compute p all mpm/atom eplastic\ncompute most all reduce max c_p\n");
   EXPECT_LT(measured("ground against column", difference(run, 0, 800)), 0.02);
   EXPECT_GT(measured("plastic strain", run.compute_scalar("most")), 1e-3);

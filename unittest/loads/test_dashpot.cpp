@@ -264,11 +264,10 @@ SERIAL_TEST(Static, Stays)
        {"", "transfer flip 1.0", "transfer aflip 1.0 stress gradient", "shape cubic"}) {
     Scene run(plane("si", "p f", "0 4 0 24", 1, 0.3) + "fix grid all mpm 1.0 " + options +
               "\nregion ground block INF INF 0 20 INF INF\ncreate_points 1 region ground ppc 2\n"
-              "fix m all mpm/material density 2000 linear 1e8 0.25\nfix g all gravity 9.81 vector "
-              "0 -1 0\n"
-              "fix floor all mpm/boundary ylo slip\nmpm_geostatic grid 0.5\ntimestep 1e-3\nrun 10\n"
-              "unfix floor\nregion base plane 0 0 0 0 1 0\n"
-              "fix far all mpm/dashpot region base 245 141\n");
+              "fix m all mpm/material density 2000 linear 1e8 0.25\n"
+              "fix g all gravity 9.81 vector 0 -1 0\nfix floor all mpm/boundary ylo slip\n"
+              "mpm_geostatic grid 0.5\ntimestep 1e-3\nrun 10\nunfix floor\n"
+              "region base plane 0 0 0 0 1 0\nfix far all mpm/dashpot region base 245 141\n");
     run.commands("variable y equal xcm(all,y)\nvariable v equal vcm(all,y)\n");
     const double before = run.variable("y");
     run.commands("run 4000\n");
@@ -309,12 +308,11 @@ SERIAL_TEST(Static, CutOnThreeSides)
   Scene run(
       plane("si", "f f", "-5 35 0 24", 1, 0.3) + "fix grid all mpm 1.0 transfer aflip 1.0\n" +
       "region ground block 0 30 0 20 INF INF\ncreate_points 1 region ground ppc 2\n"
-      "fix m all mpm/material density 2000 linear 1e8 0.25\n"
-      "fix g all gravity 9.81 vector 0 -1 0\nfix floor all mpm/boundary ylo slip\n"
-      "region left block -5 0 INF INF INF INF\nregion right block 30 35 INF INF INF INF\n"
-      "fix left all mpm/boundary region left slip\nfix right all mpm/boundary region right slip\n"
-      "mpm_geostatic grid 0.5\ntimestep 1e-3\nfix rest all mpm/relax 1e-6\nrun 5000\n"
-      "unfix rest\nunfix floor\nunfix left\nunfix right\n"
+      "fix m all mpm/material density 2000 linear 1e8 0.25\nfix g all gravity 9.81 vector 0 -1 0\n"
+      "fix floor all mpm/boundary ylo slip\nregion left block -5 0 INF INF INF INF\n"
+      "region right block 30 35 INF INF INF INF\nfix left all mpm/boundary region left slip\n"
+      "fix right all mpm/boundary region right slip\nmpm_geostatic grid 0.5\ntimestep 1e-3\n"
+      "fix rest all mpm/relax 1e-6\nrun 5000\nunfix rest\nunfix floor\nunfix left\nunfix right\n"
       "region b plane 0 0 0 0 1 0\nregion l plane 0 0 0 1 0 0\nregion r plane 30 0 0 -1 0 0\n"
       "fix b all mpm/dashpot region b 245 141\nfix l all mpm/dashpot region l 245 141\n"
       "fix r all mpm/dashpot region r 245 141\nvariable y equal xcm(all,y)\nrun 0\n");
@@ -338,8 +336,7 @@ TEST(Dashpot, RanksAndRestart)
         // layers below the face belong to two ranks of four, which see other nodes
         "displace_atoms all move 0 0 0.025\n"
         "fix m all mpm/material density 1000 neohookean 1e6 0.3\nregion low plane 0 0 0.375 0 0 1\n"
-        "region side plane 0.4 0 0 1 0 0\ntimestep 2e-4\n"
-        "variable v equal 0.1*sin(100*time)\n";
+        "region side plane 0.4 0 0 1 0 0\ntimestep 2e-4\nvariable v equal 0.1*sin(100*time)\n";
     // the far side holds the stress that the body has by then
     const std::string start =
         "velocity all set 0.1 0.2 0.3\nvelocity all ramp vx 0 2 x 0.4 1.33 sum yes\nrun 30\n";

@@ -711,17 +711,12 @@ variable atoms atom x
       head.substr(0, head.find("region slant")),
       {{"group w type 1\nfix grid w mpm 0.05\nfix m w mpm/material density 1 eos linear 1\n" + emit,
         "no fix mpm"},
-       {"fix grid all mpm 0.05\ngroup w type 1\n"
-        "fix m w mpm/material density 1 eos linear 1\n" +
+       {"fix grid all mpm 0.05\ngroup w type 1\nfix m w mpm/material density 1 eos linear 1\n" +
             emit,
         "no material"},
-       {"fix grid all mpm 0.05 frame total\n"
-        "fix m all mpm/material density 1 eos linear 1\n" +
-            emit,
+       {"fix grid all mpm 0.05 frame total\nfix m all mpm/material density 1 eos linear 1\n" + emit,
         "frame total"},
-       {"fix grid all mpm 0.05 every 2\n"
-        "fix m all mpm/material density 1 eos linear 1\n" +
-            emit,
+       {"fix grid all mpm 0.05 every 2\nfix m all mpm/material density 1 eos linear 1\n" + emit,
         "every"},
        {"fix flow all mpm/incompressible 0.05 1000 reflect 0.5\n" + emit,
         "reflect cannot be used with points"},

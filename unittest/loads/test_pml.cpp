@@ -217,9 +217,8 @@ SERIAL_TEST(Pulse, LikeInALargeBody)
   const auto velocities = [](int half, const std::string &far) {
     Scene run(filled("f f", strprintf("-%d %d -%d %d", half, half, half, half), "") + far +
               "region near block -2 2 -2 2 INF INF\ngroup near region near\n"
-              "variable f equal 1e-4*exp(-1.0*((time-24)/8)^2)\n"
-              "fix push near addforce v_f v_f 0\ntimestep 0.4\nregion seen block -14 14 -14 14 INF "
-              "INF\ngroup seen region seen\n");
+              "variable f equal 1e-4*exp(-1.0*((time-24)/8)^2)\nfix push near addforce v_f v_f 0\n"
+              "timestep 0.4\nregion seen block -14 14 -14 14 INF INF\ngroup seen region seen\n");
     std::vector<double> list;
     for (int k = 0; k < 30; k++) {
       run.commands("run 10 post no\n");
@@ -314,11 +313,9 @@ SERIAL_TEST(Static, Stays)
     Scene run(plane("si", "f f", "0 30 0 24", 1, 0.3) + "fix grid all mpm 1.0 " + options +
               "\nregion ground block INF INF 0 20 INF INF\ncreate_points 1 region ground ppc 2\n"
               "fix m all mpm/material density 2000 linear 1e8 0.25\n"
-              "fix g all gravity 9.81 vector 0 -1 0\n"
-              "fix floor all mpm/boundary ylo stick\nfix sides all mpm/boundary xlo xhi "
-              "slip\nmpm_geostatic grid 0.5\n"
-              "timestep 1e-3\nfix far all mpm/pml xlo 6 xhi 6 ylo 6\n"
-              "variable y equal xcm(all,y)\nrun 0\n");
+              "fix g all gravity 9.81 vector 0 -1 0\nfix floor all mpm/boundary ylo stick\n"
+              "fix sides all mpm/boundary xlo xhi slip\nmpm_geostatic grid 0.5\ntimestep 1e-3\n"
+              "fix far all mpm/pml xlo 6 xhi 6 ylo 6\nvariable y equal xcm(all,y)\nrun 0\n");
     const double before = run.variable("y");
     run.commands("run 2000\n");
     const double sag = 2000 * 9.81 * 20.0 * 20.0 / (2.0 * 1.2e8);    // if it had had no stress

@@ -429,9 +429,8 @@ SERIAL_TEST(Free, WaterAtRest)
     Scene run(
         space("si", "f f f", "-1 1 -1 1 -1 1", 1, 0.03) + "fix grid all mpm 0.1 " + options +
         "\nregion stone block -0.3 0.5 -0.2 0.2 -0.4 0.3\ncreate_points 1 region stone ppc 2\n"
-        "fix m all mpm/material density 1000 neohookean 1e8 0.3\n"
-        "variable p atom 9810*(0.6-z)\nfix load all mpm/traction free pressure v_p\n"
-        "timestep 1e-5\nrun 0\n");
+        "fix m all mpm/material density 1000 neohookean 1e8 0.3\nvariable p atom 9810*(0.6-z)\n"
+        "fix load all mpm/traction free pressure v_p\ntimestep 1e-5\nrun 0\n");
     const double *const values = run.fix_vector("load", 7), lift = 9810 * 0.8 * 0.4 * 0.7;
     const double exact[7] = {0.0, 0.0, lift, 0.0, 0.0, -0.1 * lift, 0.0};
     for (int k = 0; k < 7; k++) EXPECT_NEAR(values[k], exact[k], 1e-9 * lift) << k;
@@ -452,9 +451,8 @@ SERIAL_TEST(Free, WaterAtRest)
   const auto hangs = plane("si", "f f", "-1 1 -1 1", 1, 0.03) +
       "fix grid all mpm 0.1\nregion disk sphere 0.03 0.02 0 0.63\n"
       "create_points 1 region disk ppc 2 outside ignore\n"
-      "fix m all mpm/material density 1000 neohookean 1e7 0.3\nfix g all gravity 9.81 vector 0 -1 "
-      "0\n"
-      "variable p atom v_T*(1-y)\n" +
+      "fix m all mpm/material density 1000 neohookean 1e7 0.3\n"
+      "fix g all gravity 9.81 vector 0 -1 0\nvariable p atom v_T*(1-y)\n" +
       replaced(at_rest(9810, 1e-4), "run 1000",
                "fix load all mpm/traction free pressure v_p\nfix g all gravity v_g vector 0 -1 0\n"
                "run 1000");
@@ -477,9 +475,8 @@ SERIAL_TEST(Tube, AroundAnAxis)
     Scene run(plane("si", "f f", "0 1.2 0 0.4", 1, 0.03) +
               "fix grid all mpm 0.1 axisymmetric yes " + options +
               "\nregion tube block 0.4 1 0 0.2 INF INF\ncreate_points 1 region tube ppc 2\n" +
-              "fix m all mpm/material density 1000 linear 1e6 0.3\nfix walls all mpm/boundary xlo "
-              "ylo slip\n"
-              "region bore plane 0.4 0 0 1 0 0\n");
+              "fix m all mpm/material density 1000 linear 1e6 0.3\n"
+              "fix walls all mpm/boundary xlo ylo slip\nregion bore plane 0.4 0 0 1 0 0\n");
     run.set_reference();
     run.commands(replaced(at_rest(1000.0, 1e-5), "run 1000",
                           "fix load all mpm/traction region bore pressure v_T\nrun 1000"));
@@ -741,12 +738,10 @@ SERIAL_TEST(Pressure, OfARimThatCurls)
     return plane("si", "f f", "0 0.8 0 2.4", 1, 0.05) +
         strprintf("fix grid all mpm 0.1 axisymmetric yes %s\n", frame) +
         "region bar block 0 0.2 0 1 INF INF\nregion end plane 0 1 0 0 -1 0\n"
-        "create_points 1 region bar ppc 2\n"
-        "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
-        "fix walls all mpm/boundary xlo ylo slip\nvariable p equal "
-        "-3.5e5*(time/2*(time<2)+(time>=2))\n"
-        "fix load all mpm/traction region end pressure v_p\nfix dt all mpm/dt 0.5\n"
-        "run 3000\n"
+        "create_points 1 region bar ppc 2\nfix m all mpm/material density 1000 neohookean 1e6 0.3\n"
+        "fix walls all mpm/boundary xlo ylo slip\n"
+        "variable p equal -3.5e5*(time/2*(time<2)+(time>=2))\n"
+        "fix load all mpm/traction region end pressure v_p\nfix dt all mpm/dt 0.5\nrun 3000\n"
         "fix rest all mpm/relax 1e-6\nrun 6000\n";
   };
   EXPECT_EQ(times_said(scene("stress mls"), "its rim has curled"), 1);
@@ -762,8 +757,7 @@ SERIAL_TEST(Traction, WarnsOfAnotherArea)
                       "the force is that of the area which is given");
   };
   Scene run(bar("", 0.4, "", "") +
-            "fix load all mpm/traction region end pressure 1\ntimestep "
-            "1e-5\nrun 1\n");
+            "fix load all mpm/traction region end pressure 1\ntimestep 1e-5\nrun 1\n");
   const double area = run.fix_vector("load", 7)[3];
   EXPECT_EQ(told(""), 0);
   EXPECT_EQ(told(strprintf("area %.17g", 1.2 * area)), 0);

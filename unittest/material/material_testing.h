@@ -400,8 +400,7 @@ inline const Sample samples[] = {
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
      "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9"},
     {"johnson/cook cold",
-     "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 "
-     "0.37 0.013 1e-3"},
+     "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 0.37 0.013 1e-3"},
     {"zerilli/armstrong bcc",
      "density 7870 eos linear 165e9 strength zerilli/armstrong 80e9 65e6 form bcc 1033e6 0.00698 "
      "0.000415 266e6 0.289 rate 1 thermal adiabatic 450 300 0.9"},

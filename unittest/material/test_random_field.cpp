@@ -245,8 +245,7 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
     const char *law, *value, *name;
   } cases[] = {
       {"density 7830 eos shock 4570 1.49 1.93 strength johnson/cook 79.6e9 806e6 VALUE 0.168 "
-       "0.0089 "
-       "1 1.1 1540 20 thermal adiabatic 460 20 0.9 viscosity artificial 1.5 0.06",
+       "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9 viscosity artificial 1.5 0.06",
        "614e6", "B"},
       {"density 1000 neohookean VALUE 0.3 viscosity artificial 1.5 0.06", "1e6", "neohookean.E"},
       {"density 1000 eos tait VALUE 7 viscosity newtonian 1e-3", "2.2e9", "K"},
@@ -400,8 +399,7 @@ TEST_F(Random, TooShortLengths)
 TEST_F(Random, FixAndRestart)
 {
   const std::string scene = MPM_TEST::space("si", "f f f", "0 8 0 8 0 8", 1, 0.3) +
-      "fix grid all mpm 1.0\nregion body block 1 7 1 7 1 7\n"
-      "create_points 1 region body ppc 2\n";
+      "fix grid all mpm 1.0\nregion body block 1 7 1 7 1 7\ncreate_points 1 region body ppc 2\n";
   const std::string material =
       "fix m all mpm/material density 7800 eos linear 160e9 strength j2 80e9 "
       "300e6 random SIGMAY lognormal 0.3 1.5 11\n";

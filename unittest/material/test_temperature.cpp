@@ -730,8 +730,7 @@ TEST(Vary, BadInputIsRefused)
        {"eos linear 1 strength elastic 1 damage rankine 1 weibull 5 1 7 thermal "
         "adiabatic 1 1 vary SEED table 1 1 2 2",
         "new points"},
-       {"eos jwl 1 1 1 1 1 1 1 detonate 1 1 1 1 thermal adiabatic 1 1 vary X1 table 1 1 "
-        "2 2",
+       {"eos jwl 1 1 1 1 1 1 1 detonate 1 1 1 1 thermal adiabatic 1 1 vary X1 table 1 1 2 2",
         "new points"},
        {"eos ideal/gas 1.4 energy 1 thermal adiabatic 1 1 vary E0 table 1 1 2 2", "new points"},
        // the list of what can vary has nothing that cannot

@@ -168,8 +168,7 @@ inline std::string vtu(const std::string &format)
       if (type == "UInt8") o.put((uint8_t) v);
     }
     const std::string head =
-        strprintf("<DataArray type=\"%s\" Name=\"%s\" "
-                  "NumberOfComponents=\"%d\" format=\"%s\"",
+        strprintf("<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"%s\"",
                   type.c_str(), name.c_str(), width, inside ? format.c_str() : "appended");
     MeshOutput length{MeshOutput::LITTLE, ""};
     length.i((int) o.all.size());
@@ -208,10 +207,9 @@ inline std::string abaqus()
   for (int n = 0; n < 9; n++)
     s += strprintf("%d, %.17g, %.17g, %.17g\n", n + 1, nodes[n][0], nodes[n][1], nodes[n][2]);
   return s +
-      "*ELSET, elset=All, generate\n1, 2, 1\n"
-      "*Element, type=C3D8R, elset=core\n1, 1, 2, 3, 4,\n 5, 6, 7, 8\n"
-      "*Element, type=C3D4\n2, 1, 4, 5, 9\n*Elset, elset=side\n2,\n"
-      "*Material, name=m\n*Elastic\n1.0, 0.3\n";
+      "*ELSET, elset=All, generate\n1, 2, 1\n*Element, type=C3D8R, elset=core\n1, 1, 2, 3, 4,\n"
+      " 5, 6, 7, 8\n*Element, type=C3D4\n2, 1, 4, 5, 9\n*Elset, elset=side\n2,\n*Material, name=m\n"
+      "*Elastic\n1.0, 0.3\n";
 }
 
 }    // namespace MPM_TEST

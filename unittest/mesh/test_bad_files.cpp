@@ -69,15 +69,12 @@ std::string obj()
 std::string vtp()
 {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" "
-         "header_type=\"UInt64\">\n"
-         "<PolyData>\n<Piece NumberOfPoints=\"2\">\n<PointData>\n"
+         "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"2\">\n<PointData>\n"
          "<DataArray type=\"Float32\" Name=\"velocity\" NumberOfComponents=\"3\" "
-         "format=\"ascii\">1 2 3 4 5 6</DataArray>\n"
-         "<DataArray type=\"Float64\" Name=\"volume0\" format=\"appended\" "
-         "offset=\"0\"/>\n</PointData>\n<Points>\n"
-         "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 1 "
-         "1</DataArray>\n</Points>\n"
-         "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" +
+         "format=\"ascii\">1 2 3 4 5 6</DataArray>\n<DataArray type=\"Float64\" Name=\"volume0\" "
+         "format=\"appended\" offset=\"0\"/>\n</PointData>\n<Points>\n<DataArray type=\"Float64\" "
+         "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 1 1</DataArray>\n</Points>\n</Piece>\n"
+         "</PolyData>\n<AppendedData encoding=\"raw\">\n_" +
       bytes_of((int64_t) 16) + bytes_of(1.0) + bytes_of(2.0) + "\n</AppendedData>\n</VTKFile>\n";
 }
 

@@ -89,14 +89,13 @@ TEST(Mesh, Format41)
 {
   Mesh mesh =
       read(FORMAT_4 +
-           "$PhysicalNames\n1\n3 2 \"solid\"\n$EndPhysicalNames\n"
-           "$Entities\n1 1 1 2\n1 0 0 0 0\n1 0 0 0 1 0 0 0 2 1 -1\n"
-           "1 0 0 0 1 1 0 1 4 1 1\n1 0 0 0 1 1 1 1 2 1 1\n2 0 0 0 1 1 1 0 0\n$EndEntities\n"
-           "$Nodes\n2 9 1 20\n2 1 1 4\n1\n2\n3\n4\n0 0 0 0 0\n1 0 0 0 0\n1 1 0 0 0\n0 1 0 0 0\n"
-           "3 1 0 5\n5\n6\n7\n8\n20\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n0 0 2\n$EndNodes\n"
-           "$Elements\n3 3 1 3\n2 1 3 1\n1 1 2 3 4\n3 1 5 1\n2 5 6 7 8 1 2 3 4\n"
-           "3 2 4 1\n3 5 6 8 20\n$EndElements\n"
-           "$InterpolationScheme\n1 \"$x\" 3 4\n$EndInterpolationScheme\n");
+           "$PhysicalNames\n1\n3 2 \"solid\"\n$EndPhysicalNames\n$Entities\n1 1 1 2\n1 0 0 0 0\n"
+           "1 0 0 0 1 0 0 0 2 1 -1\n1 0 0 0 1 1 0 1 4 1 1\n1 0 0 0 1 1 1 1 2 1 1\n"
+           "2 0 0 0 1 1 1 0 0\n$EndEntities\n$Nodes\n2 9 1 20\n2 1 1 4\n1\n2\n3\n4\n0 0 0 0 0\n"
+           "1 0 0 0 0\n1 1 0 0 0\n0 1 0 0 0\n3 1 0 5\n5\n6\n7\n8\n20\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+           "0 0 2\n$EndNodes\n$Elements\n3 3 1 3\n2 1 3 1\n1 1 2 3 4\n3 1 5 1\n2 5 6 7 8 1 2 3 4\n"
+           "3 2 4 1\n3 5 6 8 20\n$EndElements\n$InterpolationScheme\n1 \"$x\" 3 4\n"
+           "$EndInterpolationScheme\n");
   ASSERT_EQ(mesh.elements.size(), 3u);
   EXPECT_EQ(mesh.nodes.size(), 9u);
   EXPECT_EQ(element_dimension(mesh.elements[1].type), 3);

@@ -129,11 +129,10 @@ TEST(MeshFile, PartsOfAbaqus)
                     tet = "*Part, name=Tet\n*Node\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n"
                           "*Element, type=C3D4, elset=all\n1, 1,2,3,4\n*End Part\n",
                     assembly = "*Assembly, name=a\n*Instance, name=c-1, part=Cube\n*End Instance\n"
-                               "*Instance, name=c-2, part=CUBE\n0, 0, 3\n"
-                               "0, 0, 3, 1, 0, 3, 90\n*End Instance\n"
-                               "*Instance, name=t-1, part=tet\n5, 0, 0\n*End Instance\n"
-                               "*Node\n1, 9, 9, 9\n*Elset, elset=one, instance=c-2\n1\n"
-                               "*Elset, elset=two\none, t-1\n*End Assembly\n";
+                               "*Instance, name=c-2, part=CUBE\n0, 0, 3\n0, 0, 3, 1, 0, 3, 90\n"
+                               "*End Instance\n*Instance, name=t-1, part=tet\n5, 0, 0\n"
+                               "*End Instance\n*Node\n1, 9, 9, 9\n*Elset, elset=one, instance=c-2\n"
+                               "1\n*Elset, elset=two\none, t-1\n*End Assembly\n";
   const std::string space = box(3, "si", "f f f", "-4 7 -4 7 -4 7", 1, 0.2);
   const auto scene = [&](const std::string &text) {
     const ScratchFile file("parts.inp", text);
@@ -260,10 +259,9 @@ TEST(MeshFile, DataAreThoseOfTables)
       "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n"
       "0 0 0 1 0 0 2 0 0 0 1 0 1 1 0 2 1 0\nCELLS 2 10\n4 0 1 4 3\n4 1 2 5 4\nCELL_TYPES 2\n9\n9\n"
       "CELL_DATA 2\nFIELD all 7\nJ 9 2 double\n1.25 0.5 0 0 1 0 0 0 1 2 0 0 0 1 0 0 0 1\n"
-      "sigma 6 2 double\n1 2 3 4 0 0 -1 -2 -3 -4 0 0\n"
-      "tensor 9 2 double\n1 4 0 4 2 0 0 0 3 -1 -4 0 -4 -2 0 0 0 -3\n"
-      "ep 1 2 double\n0.125 0.5\nu 2 2 double\n1 2 3 4\nw 3 2 double\n1 2 3 4 5 6\nm 1 2 double\n3 "
-      "5\n";
+      "sigma 6 2 double\n1 2 3 4 0 0 -1 -2 -3 -4 0 0\ntensor 9 2 double\n"
+      "1 4 0 4 2 0 0 0 3 -1 -4 0 -4 -2 0 0 0 -3\nep 1 2 double\n0.125 0.5\nu 2 2 double\n1 2 3 4\n"
+      "w 3 2 double\n1 2 3 4 5 6\nm 1 2 double\n3 5\n";
   const std::string table =
       "x,y,volume,F:0,F:1,F:2,F:3,F:4,F:5,F:6,F:7,F:8,stress/xx,stress/yy,stress/zz,stress/xy,"
       "stress/xz,stress/yz,eplastic,vx,vy,d2_w:0,d2_w:1,d2_w:2,mass\n"

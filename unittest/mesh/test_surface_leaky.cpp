@@ -285,10 +285,9 @@ TEST(RegionLeaky, IsTurnedScaledAndMoved)
   open.pop_back();
   const ScratchFile file("box.stl", text_of(open));
   Scene run(space_of_points + "region r mpm/mesh " + file.name +
-            " 0.5 0.1 0.2 -0.3 surface leaky turn 30 1 1 1\n"
-            "create_points 1 region r spacing 0.04\n"
-            "set group all mass 1.0\n"
-            "compute c all reduce ave x y z\nthermo_style custom step c_c[1]\nrun 0\n");
+            " 0.5 0.1 0.2 -0.3 surface leaky turn 30 1 1 1\ncreate_points 1 region r spacing 0.04\n"
+            "set group all mass 1.0\ncompute c all reduce ave x y z\n"
+            "thermo_style custom step c_c[1]\nrun 0\n");
   const double center[3] = {0.71132487, 0.71132487, 1.57735027}, shift[3] = {0.1, 0.2, -0.3};
   EXPECT_NEAR(run.lmp->atom->natoms * pow(0.04, 3), 0.125 * 6.0, 0.01);
   for (int d = 0; d < 3; d++)

@@ -130,8 +130,7 @@ SERIAL_TEST(MeshContact, BarsThatCollide)
                 "\nfix touch all mpm/mesh/contact g b1 b2\nvelocity b1 set 0.01 0 0\n"
                 "velocity b2 set -0.01 0 0\ntimestep " +
                 strprintf("%g", 0.25 * h) +
-                "\nvariable a equal vcm(b1,x)\nvariable b equal "
-                "vcm(b2,x)\nrun 0\n");
+                "\nvariable a equal vcm(b1,x)\nvariable b equal vcm(b2,x)\nrun 0\n");
       double first = 0.0, worst = 0.0, impulse = 0.0, mean = 0.0;
       while (run.evaluate("time") < 6.5) {
         run.commands("run 1 post no\n");
@@ -169,8 +168,7 @@ SERIAL_TEST(MeshContact, BlocksAtRest)
         "fix down all gravity 1 vector 0 -1 0\nfix slow all viscous 0.02\n"
         "variable one equal f_touch[1][2]\nvariable two equal f_touch[2][2]\n"
         "variable side equal f_touch[3][1]+f_touch[2][1]\n"
-        "fix mean all ave/time 1 400 400 v_one v_two v_side\n"
-        "fix d all mpm/dt 0.4\nrun 1200\n");
+        "fix mean all ave/time 1 400 400 v_one v_two v_side\nfix d all mpm/dt 0.4\nrun 1200\n");
     auto *mean = run.lmp->modify->get_fix_by_id("mean");
     EXPECT_NEAR(measured("weight of the first", mean->compute_vector(0) / 0.3), 1.0, 0.02);
     EXPECT_NEAR(measured("weight of the second", mean->compute_vector(1) / 0.15), 1.0, 0.02);
@@ -186,11 +184,9 @@ std::string pressed(const std::string &mesh, const std::string &load, bool parts
       block(1, "0 1.6 0 0.5", "-0.5 0.5", 0.05) +
       block(2, parts ? "0 0.8 0.5 1" : "0 1.6 0.5 1", "-0.5 0.5", 0.05) +
       (parts ? block(3, "0.8 1.6 0.5 1", "-0.5 0.5", 0.05) : "") +
-      "fix m all mpm/material density 1 neohookean 1000 0.3\n"
-      "fix g all mpm/mesh " +
-      mesh + " velocity ylo 0 0 slip xlo slip xhi " + load +
-      "\nfix touch all mpm/mesh/contact g b1 b2" + (parts ? " b3" : "") +
-      "\ntimestep 5e-4\nthermo_modify norm no\n";
+      "fix m all mpm/material density 1 neohookean 1000 0.3\nfix g all mpm/mesh " + mesh +
+      " velocity ylo 0 0 slip xlo slip xhi " + load + "\nfix touch all mpm/mesh/contact g b1 b2" +
+      (parts ? " b3" : "") + "\ntimestep 5e-4\nthermo_modify norm no\n";
 }
 
 // A load on a side of the mesh is of the body that is there: the force of contact becomes the load,

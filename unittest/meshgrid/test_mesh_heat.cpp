@@ -210,10 +210,9 @@ SERIAL_TEST(MeshHeat, LayersThatCutCells)
               "mpm/material density 1 linear 1e-8 0.3 thermal conducting";
           return box(2, "lj", "f f f", "-1 4 -1 4 -1 4", 2, 0.1) +
               strprintf("create_points 1 elements %s halve 1\n"
-                        "region behind block %.17g INF INF INF INF INF\n"
-                        "set region behind type 2\ngroup front type 1\ngroup behind type 2\n"
-                        "fix m front %s 1 0 1\nfix m2 behind %s 1 0 %s\n"
-                        "fix g all mpm/mesh %s frame total\n"
+                        "region behind block %.17g INF INF INF INF INF\nset region behind type 2\n"
+                        "group front type 1\ngroup behind type 2\nfix m front %s 1 0 1\n"
+                        "fix m2 behind %s 1 0 %s\nfix g all mpm/mesh %s frame total\n"
                         "fix h all mpm/mesh/heat g temperature xlo 1 temperature xhi 0\n"
                         "timestep 0.002\n",
                         file.name.c_str(), at, conducting, conducting, behind, file.name.c_str());

@@ -32,9 +32,8 @@ compute d all displace/atom
 TEST(ErrorNorms, AreThoseOfTheDefinition)
 {
   Scene run(block +
-            "compute e all mpm/error vx v_one vy v_two\n"
-            "compute x all mpm/error x v_right\nthermo_style custom step c_e "
-            "c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
+            "compute e all mpm/error vx v_one vy v_two\ncompute x all mpm/error x v_right\n"
+            "thermo_style custom step c_e c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
   EXPECT_NEAR(run.evaluate("c_e"), 0.1 * std::sqrt(0.5), 1e-14);    // half of the points are off
   EXPECT_NEAR(run.evaluate("c_e[2]"), 0.1, 1e-14);
   EXPECT_NEAR(run.evaluate("c_e[3]"), std::sqrt(0.09 + 0.5 * (0.16 + 0.09)), 1e-14);

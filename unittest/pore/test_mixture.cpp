@@ -751,9 +751,8 @@ static std::string slump(int dim, const std::string &options = "transfer apic")
 static const std::string stuff =
     "fix ms soil mpm/material density 1.25 drucker/prager 200.0 0.3 30\n"
     "fix mw water mpm/material density 1.0 eos tait 200.0 7\n"
-    "fix mix all mpm/mixture s w 2.5 0.01 drag gidaspow 0.1\n"
-    "fix floor all mpm/boundary ylo slip\nfix g all gravity 0.2 vector 0 -1 0\n"
-    "compute e all mpm/energy\ntimestep 0.02\n";
+    "fix mix all mpm/mixture s w 2.5 0.01 drag gidaspow 0.1\nfix floor all mpm/boundary ylo slip\n"
+    "fix g all gravity 0.2 vector 0 -1 0\ncompute e all mpm/energy\ntimestep 0.02\n";
 
 TEST(Slump, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
 {

@@ -375,8 +375,7 @@ std::string above_floor(const std::string &wall, double gradient, double offset,
       material + "\nfix floor all mpm/boundary " + wall +
       "\nfix g all gravity 9.81 vector 0 -1 0\n" +
       strprintf("variable p atom 9810*(1-y)*(1+%g)\n", gradient) +
-      "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 1e-2 yhi pressure 0 initial "
-      "v_p ";
+      "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 1e-2 yhi pressure 0 initial v_p ";
 }
 double mean_velocity(Scene &run, int d)
 {
@@ -442,9 +441,8 @@ SERIAL_TEST(Flow, Darcy)
       return replaced(column(10, water, strprintf("density 2000 linear %s 0.0", modulus), 1.0,
                              offset, "ylo yhi"),
                       "fix water",
-                      "fix g all gravity 10.0 vector 0 -1 0\n"
-                      "variable p atom 1e4*(1-y)\nvariable bottom equal 15000\n"
-                      "fix water");
+                      "fix g all gravity 10.0 vector 0 -1 0\nvariable p atom 1e4*(1-y)\n"
+                      "variable bottom equal 15000\nfix water");
     };
     Scene still(scene("1e12", "10000") + "timestep 1e-9\nrun 1\n");
     const double *flows = still.fix_vector("water", 7);
@@ -643,10 +641,8 @@ SERIAL_TEST(DryField, PaysNothing)
       "region soil block 0 0.4 0 1 INF INF\nregion dry block 0 0.4 1.2 1.6 INF INF\n"
       "create_points 2 region dry spacing 0.05\ncreate_points 1 region soil spacing 0.05\n"
       "group soil type 1\ngroup dry type 2\nfix one soil mpm 0.1\n"
-      "fix two dry mpm 0.1 shape linear\n"
-      "fix m soil mpm/material density 2002 linear 1e7 0.3\n"
-      "fix n dry mpm/material density 2002 linear 1e7 0.3\n"
-      "fix floor all mpm/boundary ylo slip\n"
+      "fix two dry mpm 0.1 shape linear\nfix m soil mpm/material density 2002 linear 1e7 0.3\n"
+      "fix n dry mpm/material density 2002 linear 1e7 0.3\nfix floor all mpm/boundary ylo slip\n"
       "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 0.01 free pressure 0 stages 1\n"
       "timestep 1e-5\nrun 1\n");
   const auto *const water = dynamic_cast<FixMPMPore *>(run.fix("water"));
@@ -808,10 +804,8 @@ SERIAL_TEST(Geostatic, BadInput)
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string scene = plane("si", "f p", "0 4 0 4", 1, 0.1) +
-      "fix grid all mpm 1.0 MPM_OPTIONS\n"
-      "create_points 1 box ppc 2\n"
-      "fix m all mpm/material density 2000.0 linear 1e7 0.3\n"
-      "timestep 1e-4\n";
+      "fix grid all mpm 1.0 MPM_OPTIONS\ncreate_points 1 box ppc 2\n"
+      "fix m all mpm/material density 2000.0 linear 1e7 0.3\ntimestep 1e-4\n";
   const std::string plain = replaced(scene, "MPM_OPTIONS", "");
   const std::string water = "fix water all mpm/pore 2e7 1000 9810 ",
                     soil = "soil m 0.4 constant 1e-5 ";

@@ -18,10 +18,9 @@ constexpr double GRAINS = 3e-5, WATER = 2e-4, STIFF = 2.2e8 / 0.4;
 std::string heated(const std::string &axes, const std::string &box, const std::string &options)
 {
   return space("si", axes, box, 1, 0.03) + "region soil block 0 0.4 0 0.4 0 0.4\n" +
-      "fix grid all mpm 0.1\ncreate_points 1 region soil spacing 0.05\n"
-      "fix m all mpm/material density 2000 linear 1e7 0.3 thermal conducting 1000 293 2.0 "
-      "expansion "
-      "1e-5\nfix water all mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-9 " +
+      "fix grid all mpm 0.1\ncreate_points 1 region soil spacing 0.05\nfix m all mpm/material "
+      "density 2000 linear 1e7 0.3 thermal conducting 1000 293 2.0 expansion 1e-5\nfix water all "
+      "mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-9 " +
       options +
       "\nvariable q equal 2000*1000*10/0.02*(time<0.02)\nfix heat all mpm/heat source v_q\n";
 }
@@ -95,9 +94,8 @@ TEST(Wall, LeaksAreTold)
                   strprintf("region wall block %g %g INF INF INF INF\n", -a, a) +
                   "create_points 1 region left spacing 0.05\n"
                   "create_points 1 region right spacing 0.05\n"
-                  "create_points 2 region wall spacing 0.05\n"
-                  "group soil type 1\ngroup dry type 2\nfix grid all mpm 0.1\n"
-                  "fix m soil mpm/material density 2000 linear 1e7 0.3" +
+                  "create_points 2 region wall spacing 0.05\ngroup soil type 1\ngroup dry type 2\n"
+                  "fix grid all mpm 0.1\nfix m soil mpm/material density 2000 linear 1e7 0.3" +
                   (heat ? " thermal conducting 1000 293 2\nfix heat all mpm/heat\n"
                         : "\nfix water all mpm/pore 2.2e7 1000 1 soil m 0.4 constant 1e-7\n") +
                   "fix b dry mpm/material density 2000 linear 1e7 0.3\ntimestep 1e-6\nrun 1\n",

@@ -325,11 +325,9 @@ SERIAL_TEST(Geostatic, StaysAtRest)
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string scene = plane("si", "f p", "0 4 0 4", 1, 0.1) +
-      "fix grid all mpm 1.0 MPM_OPTIONS\n"
-      "create_points 1 box ppc 2\n"
-      "fix m all mpm/material density DENSITY linear 1e7 0.3\n"
-      "timestep 1e-5\nfix water all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-5 formulation "
-      "FORM\nrun 1\n";
+      "fix grid all mpm 1.0 MPM_OPTIONS\ncreate_points 1 box ppc 2\n"
+      "fix m all mpm/material density DENSITY linear 1e7 0.3\ntimestep 1e-5\n"
+      "fix water all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-5 formulation FORM\nrun 1\n";
   const auto with = [&](const std::string &options, const std::string &density,
                         const std::string &form) {
     return replaced(replaced(replaced(scene, "MPM_OPTIONS", options), "DENSITY", density), "FORM",

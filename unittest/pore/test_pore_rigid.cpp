@@ -127,8 +127,7 @@ SERIAL_TEST(Plate, ConsolidatesTheSoil)
                   ramp) +
         strprintf("variable f equal -%g*v_q\n", 1e4 * 4 * h * h) +
         strprintf("fix water all mpm/pore %g 100 9810 soil m 0.4 constant 2e-3 %s\n", K, surface) +
-        strprintf("fix tool all mpm/rigid shape mass %g separate force 0 0 v_f hold x y rx ry "
-                  "rz\n",
+        strprintf("fix tool all mpm/rigid shape mass %g separate force 0 0 v_f hold x y rx ry rz\n",
                   4 * h * h));
     Water water(run);
     for (const double T : {0.1, 0.5}) {
@@ -225,9 +224,8 @@ TEST(Ball, IsTheSameOnRanksAndAfterARestart)
                             "fix floor all mpm/boundary zlo slip\nregion shape mpm/mesh " +
       file.name +
       " 1.0 0.75 0.4 0.77\nfix water all mpm/pore 2.2e6 1000 9810 soil m 0.4 constant 1e-3 free "
-      "pressure 0 bodies closed\n"
-      "fix tool all mpm/rigid shape density 3000 separate friction 0.4 velocity 1 0.5 -2 omega 1 2 "
-      "3\ntimestep 1e-4\n";
+      "pressure 0 bodies closed\nfix tool all mpm/rigid shape density 3000 separate friction 0.4 "
+      "velocity 1 0.5 -2 omega 1 2 3\ntimestep 1e-4\n";
   Twins run(head + fixes, 80, "fix grid all mpm 0.1\n" + fixes, 70, 1.0e-9);
   const double *a = run.serial.fix_vector("tool", 24), *b = run.whole.fix_vector("tool", 24);
   EXPECT_GT(std::fabs(measured("force", a[11])), 1.0);

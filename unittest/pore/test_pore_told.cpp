@@ -67,8 +67,7 @@ SERIAL_TEST(Soils, WithoutPointsOrTooLightAreTold)
                           "create_points 1 region soil spacing 0.05\nfix grid all mpm 0.1\n"
                           "group none empty\nfix m all mpm/material density " +
                           density +
-                          " linear 1e7 0.3\n"
-                          "fix dry none mpm/material density 2000 linear 1e7 0.3\n"
+                          " linear 1e7 0.3\nfix dry none mpm/material density 2000 linear 1e7 0.3\n"
                           "fix floor all mpm/boundary ylo slip\n" +
                           weight +
                           "fix water all mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-4 " +

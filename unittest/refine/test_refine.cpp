@@ -61,8 +61,7 @@ SERIAL_TEST(Flow, AroundACylinder)
                        "fix one all mpm/refine a b\n"
                    : "") +
               "region wall cylinder z 0 0 4 INF INF side out\n"
-              "region inside cylinder z 0 0 4 INF INF\n"
-              "region body cylinder z 0 0 1 INF INF\n"
+              "region inside cylinder z 0 0 4 INF INF\nregion body cylinder z 0 0 1 INF INF\n"
               "region around cylinder z 0 0 1 INF INF side out\n"
               "region near block -2 2 0 2 INF INF\nregion far block -2 2 0 2 INF INF side out\n"
               "region x intersect 3 inside around far\nregion y intersect 2 around near\n"
@@ -144,9 +143,8 @@ SERIAL_TEST(Momentum, OfABodyThatSpins)
 {
   Scene run(plane("lj", "p p", "0 16 0 16", 2, 0.3) +
             lattices(2, "quadratic", "", {"block 4 12 5 11 INF INF", "block 8 12 5 11 INF INF"}) +
-            "fix m all mpm/material density 1 neohookean 100 0.3\n"
-            "variable vx atom 2-0.3*(y-8)\nvariable vy atom 1+0.3*(x-8)\n"
-            "velocity all set v_vx v_vy 0\ncompute e all mpm/energy\n"
+            "fix m all mpm/material density 1 neohookean 100 0.3\nvariable vx atom 2-0.3*(y-8)\n"
+            "variable vy atom 1+0.3*(x-8)\nvelocity all set v_vx v_vy 0\ncompute e all mpm/energy\n"
             "thermo_style custom step c_e\ntimestep 0.01\nrun 0\n");
   const Totals before(run.gather());
   const double energy = run.compute_scalar();
@@ -479,9 +477,8 @@ SERIAL_TEST(BadInput, IsRefused)
                   {fix + "\nfix c all mpm/contact a b" + run, "leave one of them out"},
                   {fix + "\nfix i all mpm/implicit static" + run, "use explicit steps"}});
   const std::string apart = head +
-      "region m block 6 8 0 8 INF INF\nfix a a mpm 1.0\nfix b b mpm 0.5 "
-      "origin 0.25 0.25\ncreate_points 1 region l ppc 2 fix a\n"
-      "create_points 2 region m ppc 2 fix b\ngroup a type 1\n"
+      "region m block 6 8 0 8 INF INF\nfix a a mpm 1.0\nfix b b mpm 0.5 origin 0.25 0.25\n"
+      "create_points 1 region l ppc 2 fix a\ncreate_points 2 region m ppc 2 fix b\ngroup a type 1\n"
       "group b type 2\n";
   EXPECT_EQ(times_said(apart + law + fix + "\nrun 1\n", "do not meet"), 1);
   // a column on a floor that only nodes outside of it know: its settlement is 4 to 12 % too large

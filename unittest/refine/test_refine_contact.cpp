@@ -210,9 +210,8 @@ std::string pile(const std::vector<Part> &parts, const std::string &options,
 {
   return plane("lj", "f p", "0 16 0 8", (int) parts.size(), 0.3) + fields(2, parts, options) +
       contacts(parts, law) +
-      "fix m all mpm/material density 1 linear 1000 0.3\n"
-      "fix floor all mpm/boundary xlo slip\nfix g all gravity 1 vector -1 0 0\nfix dt all mpm/dt "
-      "0.4\n";
+      "fix m all mpm/material density 1 linear 1000 0.3\nfix floor all mpm/boundary xlo slip\n"
+      "fix g all gravity 1 vector -1 0 0\nfix dt all mpm/dt 0.4\n";
 }
 
 // A block rests on another one: they press on each other with its weight, and the stress is that of
@@ -381,8 +380,7 @@ SERIAL_TEST(BadInput, IsRefused)
     const std::string fixes = some[2].level == 1 ? c1 : c0;
     return lines_that_say(
         plane("lj", "f f", "-4 20 -4 12", (int) some.size(), 0.3) + fields(2, some, "") + fixes +
-            "\nfix m all mpm/material density 1 neohookean 100 0.3\ntimestep 0.01\n"
-            "run 2\n",
+            "\nfix m all mpm/material density 1 neohookean 100 0.3\ntimestep 0.01\nrun 2\n",
         "WARNING");
   };
   const auto lines = words({{'A', 0, "0 6 0 4"}, {'A', 1, "0 6 4 8"}, {'B', 1, "6 12 5 8"}});

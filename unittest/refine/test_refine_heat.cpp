@@ -246,8 +246,7 @@ PARAMETER_TEST(Friction, WarmsAllLattices, const char *, Values("", "every auto"
             "velocity all set 1 0 0\nfix g all gravity 1 vector 0 -1 0\n"
             "fix w all mpm/boundary ylo separate friction 0.3 heat yes\nfix heat all mpm/heat " +
             GetParam() +
-            "\n"
-            "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.02\nrun 100\n");
+            "\ncompute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.02\nrun 100\n");
   EXPECT_NEAR(measured("heat of points over what came",
                        Warm(run).heat() / run.fix("heat")->compute_scalar()),
               1.0, 1e-12);
@@ -297,11 +296,10 @@ TEST(Refine, HeatRanksAndRestart)
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string head = plane("lj", "f f", "0 8 0 8", 2, 0.2) +
-      "region l block 0 4 0 8 INF INF\nregion r block 4 8 0 8 INF INF\n"
-      "group a type 1\ngroup b type 2\nfix a a mpm 1.0\nfix b b mpm 0.5 origin 0.25 0.25\n"
-      "fix one all mpm/refine a b\n"
-      "create_points 1 region l ppc 2 fix a\ncreate_points 2 region r ppc 2 fix b\n"
-      "group a type 1\ngroup b type 2\n";
+      "region l block 0 4 0 8 INF INF\nregion r block 4 8 0 8 INF INF\ngroup a type 1\n"
+      "group b type 2\nfix a a mpm 1.0\nfix b b mpm 0.5 origin 0.25 0.25\n"
+      "fix one all mpm/refine a b\ncreate_points 1 region l ppc 2 fix a\n"
+      "create_points 2 region r ppc 2 fix b\ngroup a type 1\ngroup b type 2\n";
   expect_refused(
       head + solid,
       {{"fix h all mpm/heat time euler\nrun 0\n", "use time explicit"},

@@ -332,9 +332,8 @@ PARAMETER_TEST(InfiniteForce, EndsTheRun, const char *,
       "fix grid all mpm 1.0 axisymmetric yes " + GetParam() +
       "\nregion body block 0 5 2 6 INF INF\ncreate_points 1 region body ppc 2\n"
       "fix m all mpm/material density 2.0 neohookean 10.0 0.3\nfix axis all mpm/boundary xlo slip\n"
-      "velocity all ramp vx -0.5 0.5 y 2 6\nvariable q atom (x<3)*1e308*10\nfix kick all addforce "
-      "v_q 0 0\n"
-      "fix dt all mpm/dt 0.3\nrun 6\n";
+      "velocity all ramp vx -0.5 0.5 y 2 6\nvariable q atom (x<3)*1e308*10\n"
+      "fix kick all addforce v_q 0 0\nfix dt all mpm/dt 0.3\nrun 6\n";
   EXPECT_THAT(error_of(rings), ::testing::ContainsRegex("Material point [0-9]+ at "));
 }
 
@@ -562,8 +561,7 @@ static const char *const CONTACT = "fix c all mpm/contact F1 F2 law coulomb 0.3\
 static const char *const FLOOR = "fix floor all mpm/boundary zlo stick\n";
 static const char *const SURFACE = "fix surf body mpm/surface\n";
 static const char *const PAIR =
-    "pair_style granular\n"
-    "pair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0.5 0.4\n";
+    "pair_style granular\npair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0.5 0.4\n";
 static const char *const RUN = "run 3\n";
 
 class BadCoupling : public ::testing::TestWithParam<Change> {};
@@ -622,8 +620,7 @@ static const Change grains[] = {
      "pair_style granular\npair_coeff * * hooke 50.0 0.5 tangential linear_nohistory 0.5 0.4 "
      "cutoff 1.2\n",
      "Cutoff 1\\.2 of pair style granular between points of type 1 and grains of type 3 is below "
-     "the "
-     "sum 1\\.3 of their largest radii.*give pair_style and pair_coeff again"},
+     "the sum 1\\.3 of their largest radii.*give pair_style and pair_coeff again"},
     {"GrainsWithoutRadius", "", "set group grain diameter 0", "requires extended particles"},
     {"NveOfPoints", "", "fix more all nve",
      "864 material points of fix F1 .* also integrated by fix more \\(style nve\\): give the fixes "

@@ -36,8 +36,7 @@ timestep 0.01
 )";
 
 static const std::string pair =
-    "pair_style granular\n"
-    "pair_coeff * * hooke 50.0 0.5 tangential linear_history 20.0 0.5 0.4\n"
+    "pair_style granular\npair_coeff * * hooke 50.0 0.5 tangential linear_history 20.0 0.5 0.4\n"
     "neigh_modify exclude group body body\n";
 
 static const std::vector<std::string> fixes = {

@@ -298,16 +298,10 @@ static const Limit time_step_cases[] = {
     {"shape cubic transfer apic scheme usl", 1.25, 1.4},
     {"shape cpgimp transfer flip 1.0 scheme usl", 0.55, 0.75},
     {"shape linear transfer apic scheme usl light 0.5", 0.8, 1.1},
-    {"shape linear transfer flip 1.0 scheme usl light 0.5 "
-     "locking fbar",
-     0.8, 1.1},
+    {"shape linear transfer flip 1.0 scheme usl light 0.5 locking fbar", 0.8, 1.1},
     {"shape linear transfer apic scheme usl light 0.5 frame total reference update 1.5", 0.8, 1.1},
-    {"shape linear transfer flip 1.0 scheme usl light 0.5 "
-     "axisymmetric yes",
-     0.7, 1.0},
-    {"shape linear transfer apic scheme usl light 0.5 "
-     "axisymmetric yes",
-     0.8, 1.1}};
+    {"shape linear transfer flip 1.0 scheme usl light 0.5 axisymmetric yes", 0.7, 1.0},
+    {"shape linear transfer apic scheme usl light 0.5 axisymmetric yes", 0.8, 1.1}};
 
 PARAMETER_TEST(TimeStep, IsWithinTheTable, Limit, ValuesIn(time_step_cases))
 {
@@ -450,9 +444,8 @@ SERIAL_TEST(Told, PointsThatVanish)
   const auto told = [](const std::string &law) {
     return times_said(
         plane("lj", "p f", "0 4 0 12", 1, 0.3) +
-            "fix grid all mpm 1.0\nregion body block 0 4 0 10 INF INF\ncreate_points 1 "
-            "region body ppc 2\n"
-            "fix m all mpm/material density 1 " +
+            "fix grid all mpm 1.0\nregion body block 0 4 0 10 INF INF\n"
+            "create_points 1 region body ppc 2\nfix m all mpm/material density 1 " +
             law +
             "\nfix floor all mpm/boundary ylo slip\n"
             "region top block INF INF 9.5 INF INF INF\ngroup top region top\n"

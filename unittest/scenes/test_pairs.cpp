@@ -68,9 +68,8 @@ const Choice choices[] = {
     {"grain", "grain", FIX, ""},
     {"map", "map", HEAD, "atom_modify map hash\ncomm_modify cutoff 1.5\n"},
     {"rigid", "rigid", FIX,
-     "region tool mpm/mesh STL 1.0 2.0 3.7 2.0\n"
-     "fix tool all mpm/rigid tool density 2.0 separate friction 0.2 velocity 0 -0.4 0.1 omega 0.1 "
-     "0.2 0.1\n"},
+     "region tool mpm/mesh STL 1.0 2.0 3.7 2.0\nfix tool all mpm/rigid tool density 2.0 separate "
+     "friction 0.2 velocity 0 -0.4 0.1 omega 0.1 0.2 0.1\n"},
     {"driven", "wall", FIX,
      "variable push equal 0.3*sin(0.2*step)\n"
      "fix w2 all mpm/boundary ylo slip velocity 0 v_push 0\n"},
@@ -84,8 +83,7 @@ const Choice choices[] = {
     {"balance", "comm", FIX, "comm_style tiled\nfix lb all balance 5 1.0 rcb\n"},
     {"delay", "neigh", FIX, "neigh_modify every 5 delay 5 check no\n"},
     {"deposit", "deposit", FIX,
-     "region sky block 6 7.5 4 7.5 0.1 0.4\n"
-     "fix rain all deposit 3 3 4 4711 region sky near 0.1\n"},
+     "region sky block 6 7.5 4 7.5 0.1 0.4\nfix rain all deposit 3 3 4 4711 region sky near 0.1\n"},
     {"create", "between", BETWEEN,
      "region more block 0 2 4 6 INF INF\n"
      "create_points 2 region more ppc 2\ngroup two type 2\ngroup bodies type 1 2\n"},

@@ -388,14 +388,11 @@ static void collide(const std::string &options, Impact c)
   Scene run;
   setup(run, {h, -1.0, 0.0, -1.5, c.length2 + 0.5, options});
   run.commands(strprintf("region second block 0 %.17g INF INF INF INF\n"
-                         "create_points 2 region second ppc 2 1\n"
-                         "group one type 1\n"
-                         "group two type 2\n"
-                         "unfix elastic\n"
+                         "create_points 2 region second ppc 2 1\ngroup one type 1\n"
+                         "group two type 2\nunfix elastic\n"
                          "fix m1 one mpm/material density 1 linear 100 0\n"
                          "fix m2 two mpm/material density 1 linear %.17g 0\n"
-                         "velocity one set %.17g 0 0\n"
-                         "velocity two set %.17g 0 0\n",
+                         "velocity one set %.17g 0 0\nvelocity two set %.17g 0 0\n",
                          c.length2, c.E2, c.v1, c.v2));
   const double speed = std::abs(c.v1 - c.v2), v_after[3] = {0.0, c.v1_after, c.v2_after};
   const double start = run.sums().kinetic;

@@ -722,8 +722,7 @@ PARAMETER_TEST(FreeBody, Invariants, const char *,
             strprintf("fix grid all mpm 1.0 %s\nregion a block -2 1 -2 2 -1 2\n"
                       "region b sphere 1 0.5 0 1.8\nregion body union 2 a b\n"
                       "create_points 1 region body ppc 2\n"
-                      "fix m all mpm/material density 1.0 neohookean 50 0.3\n"
-                      "timestep 0.02\n",
+                      "fix m all mpm/material density 1.0 neohookean 50 0.3\ntimestep 0.02\n",
                       GetParam()));
   run.set_velocity([](const double *x, double *v) {
     v[0] = -0.4 * x[1] + 0.1 * x[2] + 0.02;
@@ -839,9 +838,8 @@ TEST(AffineSpin, CompletesTheAngularMomentum)
     Scene run(plane("lj", "p p", "0 16 0 16") +
               body("block 2 9 2 5 INF INF", "density 3.0 neohookean 1.0 0.3",
                    strprintf("1.0 %s", options)) +
-              "timestep 0.5\ncompute q all mpm/atom angmom/z\n"
-              "compute sum all reduce sum c_q\nvariable L equal angmom(all,z)+c_sum\n"
-              "thermo_style custom step c_sum\n");
+              "timestep 0.5\ncompute q all mpm/atom angmom/z\ncompute sum all reduce sum c_q\n"
+              "variable L equal angmom(all,z)+c_sum\nthermo_style custom step c_sum\n");
     run.set_velocity([](const double *x, double *v) {
       v[0] = 0.4 - 0.02 * (x[1] - 3.5);
       v[1] = 0.3 + 0.02 * (x[0] - 5.5) + 0.05 * cos(x[0]);

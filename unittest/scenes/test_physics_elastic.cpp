@@ -273,8 +273,7 @@ TEST(Block, SuddenLoad)
                          "fix m all mpm/material density %g neohookean %g %g\n"
                          "fix top all mpm/boundary zhi xlo ylo slip\n"
                          "fix g all gravity 1000 vector 0 0 -1\nfix step all mpm/dt 0.2 every 1\n"
-                         "variable t equal time\n"
-                         "fix end all halt 10 v_t > 0.095 error continue\n",
+                         "variable t equal time\nfix end all halt 10 v_t > 0.095 error continue\n",
                          h, ppc, RHO, E, NU));
   run.set_reference();
   double lowest = 0.0, t_lowest = 0.0, stretch = 0.0;

@@ -160,9 +160,8 @@ TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
     Scene run(plane("si", "p p", "0 16 0 16", 1, 0.4) +
               body("box", "density 1.0 eos ideal/gas 1.4 pressure 1.0 viscosity artificial 2.0 1.0",
                    strprintf("1.0 %s", options), ppc) +
-              "variable u atom random(-1e-6,1e-6,4711)\n"
-              "variable v atom random(-1e-6,1e-6,4712)\nvelocity all set v_u v_v 0\n"
-              "timestep 0.2\n");
+              "variable u atom random(-1e-6,1e-6,4711)\nvariable v atom random(-1e-6,1e-6,4712)\n"
+              "velocity all set v_u v_v 0\ntimestep 0.2\n");
     const double start = run.sums().kinetic;
     run.commands("run 1200\n");
     return measured(std::string(options) + " ppc " + ppc, run.sums().kinetic / start);
@@ -324,9 +323,8 @@ TEST(Detonation, OfTnt)
   for (int level = 0; level < 2; level++) {
     const double h = 1e-3 / (1 << level), t = 0.09 / D, dt = 0.2 * h / D;
     Scene run(strip(0.12, h, "transfer flip 1.0 scheme musl") +
-              strprintf("region tnt block 0 %.17g INF INF INF INF\n"
-                        "create_points 1 region tnt ppc 2 1\n%s"
-                        "fix wall all mpm/boundary xlo slip\ntimestep %.17g\nrun 0\n",
+              strprintf("region tnt block 0 %.17g INF INF INF INF\ncreate_points 1 region tnt ppc "
+                        "2 1\n%sfix wall all mpm/boundary xlo slip\ntimestep %.17g\nrun 0\n",
                         length, tnt, dt));
     const double start = run.evaluate("c_e");
     EXPECT_NEAR(start, 7.0e9 * length * h, 1e-6 * start);

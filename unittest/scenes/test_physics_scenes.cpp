@@ -69,13 +69,12 @@ PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
   Scene run(
       plane("si", "f f", strprintf("0 %.17g 0 %.17g", 6.0 * a, 3.0 * a), 1, 0.5 * h) +
       strprintf(
-          "fix grid all mpm %.17g transfer %s\n"
-          "region column block 0 %.17g 0 %.17g INF INF\n"
+          "fix grid all mpm %.17g transfer %s\nregion column block 0 %.17g 0 %.17g INF INF\n"
           "create_points 1 region column ppc 2\n"
           "fix water all mpm/material density 1000 eos tait 225000 7 viscosity newtonian 0.001\n"
-          "fix walls all mpm/boundary xlo xhi ylo slip\n"
-          "fix g all gravity %.17g vector 0 -1 0\nfix step all mpm/dt 0.4\n"
-          "variable t equal time\nfix end all halt 10 v_t > 0.19 error continue\n",
+          "fix walls all mpm/boundary xlo xhi ylo slip\nfix g all gravity %.17g vector 0 -1 0\n"
+          "fix step all mpm/dt 0.4\nvariable t equal time\n"
+          "fix end all halt 10 v_t > 0.19 error continue\n",
           h, GetParam(), a, 2.0 * a, g));
   const auto start = run.sums();
   std::vector<double> time, Z, H;
@@ -215,10 +214,9 @@ static std::string grain_on_block(const std::string &options, const std::string 
                    "fix soft block mpm/material density 1000 neohookean 1.0e5 0.3\n"
                    "create_atoms 2 single 0.0061 -0.0033 0.00855\ngroup grains type 2\n"
                    "set type 1 diameter 0.0025\nset type 2 diameter 0.014 density 2500\n"
-                   "velocity grains set 0.05 0.03 -0.5\n"
-                   "pair_style granular\npair_coeff * * hertz 1.0e5 0.0 %s\n"
-                   "neigh_modify exclude type 1 1\nfix move grains nve/sphere\n"
-                   "timestep 2.5e-5\n",
+                   "velocity grains set 0.05 0.03 -0.5\npair_style granular\n"
+                   "pair_coeff * * hertz 1.0e5 0.0 %s\nneigh_modify exclude type 1 1\n"
+                   "fix move grains nve/sphere\ntimestep 2.5e-5\n",
                    options.c_str(), tangential.c_str());
 }
 
@@ -301,16 +299,13 @@ PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
   const double density = m / (4.0 / 3.0 * 3.14159265358979323846 * R * R * R);
   Scene run(strprintf(
       "units si\nboundary f f f\natom_style hybrid sphere mpm\ncomm_modify vel yes\n"
-      "neighbor 0.002 bin\nregion box block 0 0.005 0 0.005 -0.16 0.02\n"
-      "create_box 2 box\nfix grid all mpm 0.005 every %d\n"
-      "region column block 0 0.005 0 0.005 -0.15 0\n"
+      "neighbor 0.002 bin\nregion box block 0 0.005 0 0.005 -0.16 0.02\ncreate_box 2 box\n"
+      "fix grid all mpm 0.005 every %d\nregion column block 0 0.005 0 0.005 -0.15 0\n"
       "create_points 1 region column ppc 1 1 2\ngroup column type 1\n"
       "fix m column mpm/material density 1000 linear 1.0e7 0.3\n"
-      "fix sides all mpm/boundary xlo xhi ylo yhi slip\n"
-      "create_atoms 2 single 0.0025 0.0025 %.17g\ngroup grains type 2\n"
-      "set type 1 diameter 0.0025\nset type 2 diameter %.17g density %.17g\n"
-      "velocity grains set 0 0 -1\n"
-      "pair_style granular\n"
+      "fix sides all mpm/boundary xlo xhi ylo yhi slip\ncreate_atoms 2 single 0.0025 0.0025 %.17g\n"
+      "group grains type 2\nset type 1 diameter 0.0025\nset type 2 diameter %.17g density %.17g\n"
+      "velocity grains set 0 0 -1\npair_style granular\n"
       "pair_coeff * * hertz %.17g 0.0 tangential linear_nohistory 0.0 0.0\n"
       "neigh_modify exclude type 1 1\nfix move grains nve/sphere\ncompute e all mpm/energy\n"
       "timestep 1.0e-6\nthermo_style custom step c_e[6]\n",

@@ -50,8 +50,7 @@ Incline flow(double degrees, int cells, double start, double time)
   Scene run(layer(depth, depth / cells, 4, a, 0.02,
                   strprintf("density 1500 mui 1.5e5 0.3 %.17g %.17g %.17g %.17g fraction 0.6", mus,
                             mu2, I0, d),
-                  strprintf("variable u atom %.17g*(1-(1-y/%.17g)^1.5)\n"
-                            "velocity all set v_u 0 0\n",
+                  strprintf("variable u atom %.17g*(1-(1-y/%.17g)^1.5)\nvelocity all set v_u 0 0\n",
                             start, depth)) +
             strprintf("fix end all halt 10 v_t > %.17g error continue\nrun 1000000\n", time));
   Incline result{0.0, 0.0, 0.0};
@@ -203,8 +202,7 @@ TEST(RoughFloor, StopsAGrain)
         Scene run(plane("lj", "p f", "0 20 0 8 -0.5 0.5", 1, 0.3) +
                   strprintf("fix grid all mpm 1.0 shape %s transfer %s\n"
                             "region one block 1 1.5 0 0.5 INF INF\n"
-                            "create_points 1 region one ppc 2\n"
-                            "displace_atoms all move 0 %.17g 0\n"
+                            "create_points 1 region one ppc 2\ndisplace_atoms all move 0 %.17g 0\n"
                             "fix sand all mpm/material density 1 drucker/prager 1e3 0.3 25 plane\n"
                             "fix floor all mpm/boundary ylo stick\nvelocity all set 1 0 0\n"
                             "compute e all mpm/energy\nthermo_style custom step c_e\n"

@@ -20,8 +20,7 @@ static std::string soft_body(const std::string &options, const std::string &step
 {
   return space("lj", "p p p", "0 8 0 8 0 8") +
       body("block 2 5 2.5 5 3 5", "density 1.0 neohookean 10.0 0.3", "1.0 " + options) +
-      "velocity all set 0.5 0.2 0.1\nvelocity all ramp vy -0.8 0.8 x 2 5 sum yes\n"
-      "timestep 0.05\n" +
+      "velocity all set 0.5 0.2 0.1\nvelocity all ramp vy -0.8 0.8 x 2 5 sum yes\ntimestep 0.05\n" +
       steps;
 }
 
@@ -228,8 +227,7 @@ TEST(Pitfall, ReactionsCountEachNodeOnce)
 {
   const std::string scene = space("lj", "f f f", "0 8 0 8 0 8") +
       body("block 1 7 1 7 0 4", "density 1.0 neohookean 100.0 0.3") +
-      "fix floor all mpm/boundary zlo slip\nfix g all gravity 1.0 vector 0 0 -1\n"
-      "timestep 0.02\n";
+      "fix floor all mpm/boundary zlo slip\nfix g all gravity 1.0 vector 0 0 -1\ntimestep 0.02\n";
   const double weight = 6.0 * 6.0 * 4.0, dt = 0.02;
   OnRanks both(scene, "run 0\n");
   auto &run = both.parallel, &serial = both.serial;
@@ -255,9 +253,8 @@ TEST(Pitfall, BodiesOfDifferentRanksCollide)
             "region box block 0 16 0 4 0 4\nprocessors * 1 1\ncreate_box 2 box\n"
             "fix grid all mpm 1.0\n" +
             bodies({{"one", "block 5 7 1 3 1 3"}, {"two", "block 9 11 1 3 1 3"}}) +
-            "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\n"
-            "velocity one set 0.5 0 0\nvelocity two set -0.5 0 0\n"
-            "timestep 0.05\nrun 200\n");
+            "fix soft all mpm/material density 1.0 neohookean 10.0 0.3\nvelocity one set 0.5 0 0\n"
+            "velocity two set -0.5 0 0\ntimestep 0.05\nrun 200\n");
   double p[2] = {0.0, 0.0};
   for (const auto &point : run.gather()) p[(int) point.type - 1] += point.mass * point.v[0];
   EXPECT_LT(p[0], -0.5);    // was 4: they have bounced

@@ -114,8 +114,7 @@ TEST(RanksWithoutPoints, Slabs)
 {
   const std::string scene = space("lj", "f f f", "0 40 0 8 0 8") +
       body("block 1 6 2 6 2 6", "density 1.0 neohookean 10.0 0.3") +
-      "velocity all set 1.0 0.0 0.0\nvelocity all ramp vy -0.8 0.8 x 1 6 sum yes\n"
-      "timestep 0.05\n";
+      "velocity all set 1.0 0.0 0.0\nvelocity all ramp vy -0.8 0.8 x 1 6 sum yes\ntimestep 0.05\n";
   OnRanks run(scene, "run 400\n", "processors " + std::to_string(nranks()) + " 1 1\n");
   EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
 }
@@ -226,9 +225,8 @@ PARAMETER_TEST(HaloWalls, BelowABorder, std::string,
                     body("block INF INF INF INF 0 4", "density 1.0 neohookean 20.0 0.3",
                          std::string("1.0 origin 0 0 ") + origin) +
                     "fix w all mpm/boundary zlo " + GetParam() +
-                    "\nfix g all gravity 0.1 vector 0.3 0 -1\n"
-                    "velocity all ramp vx -0.4 0.4 z 0 4\nvelocity all ramp vz 0 -0.4 x 0 8\n"
-                    "timestep 0.03\n",
+                    "\nfix g all gravity 0.1 vector 0.3 0 -1\nvelocity all ramp vx -0.4 0.4 z 0 4\n"
+                    "velocity all ramp vz 0 -0.4 x 0 8\ntimestep 0.03\n",
                 "run 100\n", "processors 1 1 " + n + "\n");
     EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
   }

@@ -79,9 +79,8 @@ std::string in_plane(const std::string &mpm, const std::string &fixes,
   return plane("lj", "f f", "0 8 0 8", 1, 0.3) + "region body block 1 5 0 3 INF INF\n" +
       "fix grid all mpm 0.5 " + mpm + "\ncreate_points 1 region body ppc 2\n" +
       "fix m all mpm/material " + material + "\nfix floor all mpm/boundary ylo slip\n" +
-      "velocity all set 0.1 -0.2 0\nfix g all gravity 0.1 vector 0 -1 0\n"
-      "timestep 0.002\n" +
-      fixes + "compute e all mpm/energy\n";
+      "velocity all set 0.1 -0.2 0\nfix g all gravity 0.1 vector 0 -1 0\ntimestep 0.002\n" + fixes +
+      "compute e all mpm/energy\n";
 }
 
 /** Two bodies, or soil and water, in fields of their own. */
@@ -168,10 +167,9 @@ std::vector<Named> scenes()
                            "fix solve all mpm/implicit static\ntimestep 1\n",
                            SOIL)});
   list.push_back({"layers", in_plane("", "fix far all mpm/pml ylo 2\n")});
-  list.push_back({"dashpot",
-                  in_plane("",
-                           "region w plane 1 0 0 1 0 0\n"
-                           "fix far all mpm/dashpot region w 10 5\n")});
+  list.push_back(
+      {"dashpot",
+       in_plane("", "region w plane 1 0 0 1 0 0\nfix far all mpm/dashpot region w 10 5\n")});
   list.push_back({"traction",
                   in_plane("",
                            "region e plane 5 0 0 -1 0 0\n"

@@ -32,8 +32,7 @@ static const std::string points = "region one sphere 2.6 3.0 3.2 1.9\n"
                                   "create_points 1 region one ppc 2\n"
                                   "create_points 2 region two ppc 2\n";
 
-static const std::string start = "velocity one set 0.6 0.35 -0.4\n"
-                                 "velocity two set -0.5 0.1 -0.3\n";
+static const std::string start = "velocity one set 0.6 0.35 -0.4\nvelocity two set -0.5 0.1 -0.3\n";
 
 // a body of the total frame would fall through a floor that it does not touch at first
 static const std::string start_level = "velocity one set 0.6 0.35 0\nvelocity two set -0.5 0.1 0\n";

@@ -283,8 +283,7 @@ TEST(RestartOrders, GrainsGoOnAsTheyWere)
                            "fix m solid mpm/material density 1 neohookean 10 0.3\n"
                            "fix skin solid mpm/surface\n";
   const std::string move = "fix move balls nve/sphere\n",
-                    wall = "fix w balls wall/gran hooke 20 "
-                           "NULL 0 NULL 0 0 zplane 0 8\n";
+                    wall = "fix w balls wall/gran hooke 20 NULL 0 NULL 0 0 zplane 0 8\n";
   const std::string scene = "units lj\nboundary p p f\natom_style hybrid sphere mpm\n" + lists +
       "region box block 0 4 0 4 0 8\ncreate_box 2 box\nfix grid all mpm 1.0\n"
       "region solid block INF INF INF INF 0 2\ncreate_points 1 region solid ppc 2\n"

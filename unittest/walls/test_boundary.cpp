@@ -328,9 +328,8 @@ TEST(Work, LedgerAndRestart)
   // uniform motion into a wall: all that happens in the first step is the projection
   const std::string scene = space("lj", "p f p", "0 4 0 8 0 4") +
       body("block 0 4 0 4 0 4", "density 1.0 neohookean 10.0 0.3") +
-      "fix w all mpm/boundary ylo slip velocity 0 MPM_V 0\n"
-      "velocity all set 0 -0.5 0\ntimestep 0.01\ncompute e all mpm/energy\n"
-      "thermo_style custom step c_e c_e[*]\nrun 1\n";
+      "fix w all mpm/boundary ylo slip velocity 0 MPM_V 0\nvelocity all set 0 -0.5 0\n"
+      "timestep 0.01\ncompute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nrun 1\n";
   // nodes at distance j h: mass over area, quadratic splines and points at 1/4, 3/4, ...;
   // the image and the first node inside have the mass of one full node
   const double image = 0.5 * (0.25 * 0.25) * 0.5, plane = 0.5, inside = 1.0 - image, area = 16.0;
@@ -428,9 +427,8 @@ static std::string incline(double mu)
       body("block 0.5 1.0 0 0.25 -0.1 0.1", "density 1000 neohookean 4.2e6 0.4", "0.05") +
       strprintf("fix w all mpm/boundary ylo separate friction %g\n", mu) +
       "variable g equal 9.81*((time<0.05)*time/0.05+(time>=0.05))\n"
-      "fix g all gravity v_g vector 0.5 -0.86602540378443865 0\n"
-      "fix step all mpm/dt 0.4\nvariable x equal xcm(all,x)\n"
-      "variable v equal vcm(all,x)\nrun 0\n";
+      "fix g all gravity v_g vector 0.5 -0.86602540378443865 0\nfix step all mpm/dt 0.4\n"
+      "variable x equal xcm(all,x)\nvariable v equal vcm(all,x)\nrun 0\n";
 }
 
 /** Acceleration in so many steps. */
@@ -967,8 +965,7 @@ TEST(Motion, PistonOfChangingShape)
   // a block region whose lower face comes down at speed 0.1 pushes the body through an empty box
   Scene run(plane("lj", "f f", "0 8 0 20", 1, 0.5) +
             body("block 2 6 10 14 -0.5 0.5", "density 1.0 neohookean 50.0 0.3") +
-            "variable face equal 14-0.1*time\n"
-            "region piston block INF INF v_face INF INF INF\n"
+            "variable face equal 14-0.1*time\nregion piston block INF INF v_face INF INF INF\n"
             "fix w all mpm/boundary region piston slip\ntimestep 0.02\n"
             "variable v equal vcm(all,y)\nrun 0\n");
   run.commands("run 1500\n");
@@ -1107,9 +1104,8 @@ Pulled pull_at_wall(bool face, const std::string &kind, double h, double off, bo
       (along ? strprintf("region top block INF INF %.17g 9 INF INF\ngroup top region top\n"
                          "region low block INF INF -9 %.17g INF INF\ngroup low region low\n",
                          1.0 - 0.6 * d, 0.6 * d) +
-               "fix top top addforce 0 $(1/count(top)) 0\nfix low low addforce 0 "
-               "$(-1/count(top)) "
-               "0\n"
+               "fix top top addforce 0 $(1/count(top)) 0\n"
+               "fix low low addforce 0 $(-1/count(top)) 0\n"
              : strprintf("region end block %.17g 9 -9 9 INF INF\ngroup end region end\n",
                          s + 1.0 - 0.6 * d) +
                "fix end end addforce $(1/count(end)) 0 0\n") +
@@ -1258,8 +1254,7 @@ TEST(Regions, BlockSlidesDownAPlane)
                 "fix w all mpm/boundary region hill slip\n" +
                 strprintf("fix g all gravity %g vector 0 -1 0\n", g) +
                 strprintf("fix v all viscous $(%g*mass(all)/count(all))\n", damp) +
-                "variable v equal vcm(all,x)\n"
-                "fix dt all mpm/dt 0.5 until 0.3\nrun 100000\n");
+                "variable v equal vcm(all,x)\nfix dt all mpm/dt 0.5 until 0.3\nrun 100000\n");
       const double slides = g * s / damp * (1.0 - exp(-damp * run.time())) * c;
       EXPECT_NEAR(measured("velocity", run.variable("v") / slides), 1.0, 2e-3);
       const double weight = g * c * height, fx = run.evaluate("f_w[1]"),
@@ -1315,11 +1310,9 @@ TEST(Regions, SlipHoldsWhereItMoves)
                      strprintf("1.0 frame updated origin %g 0", origin)) +
                 strprintf("variable d equal %g*0.04*time\n", toward) +
                 "region plate block 16 30 0 12 INF INF move v_d NULL NULL\n"
-                "fix left all mpm/boundary xlo slip\n"
-                "fix w all mpm/boundary region plate slip\n"
-                "fix damp all viscous 0.1\ntimestep 0.025\n"
-                "compute s all mpm/atom stress/xx\nregion end block 12 30 3 9 INF INF\n"
-                "compute low all reduce/region end min c_s\n"
+                "fix left all mpm/boundary xlo slip\nfix w all mpm/boundary region plate slip\n"
+                "fix damp all viscous 0.1\ntimestep 0.025\ncompute s all mpm/atom stress/xx\n"
+                "region end block 12 30 3 9 INF INF\ncompute low all reduce/region end min c_s\n"
                 "compute high all reduce/region end max c_s\n"
                 "thermo_style custom step c_low c_high\nrun 1250\n");    // 1.25 cells
       const double force = -run.evaluate("f_w[1]") / 8.0;
@@ -1815,8 +1808,7 @@ TEST(Regions, ThatAreElsewhereInTheNextRunHaveNotMovedThere)
   Scene run(space("lj", "p p f", "0 4 0 4 0 8") +
             body("block 0 4 0 4 0 4", "density 1.0 neohookean 100.0 0.3", "1.0 transfer pic") +
             "variable d equal 0.1*step*dt\nregion plate block INF INF INF INF INF 2.0 move NULL "
-            "NULL v_d\n"
-            "fix w all mpm/boundary region plate stick\ntimestep 0.01\nrun 5\n");
+            "NULL v_d\nfix w all mpm/boundary region plate stick\ntimestep 0.01\nrun 5\n");
   run.commands("variable d equal 0.1*step*dt+0.02\nrun 1\n");
   int held = 0;
   for (const auto &p : run.gather()) {

@@ -116,14 +116,13 @@ PARAMETER_TEST(Balance, OfMovingWalls, Motion, ValuesIn(motions))
   Scene run(space(name.find("metal") == 0 ? "metal" : "lj", "f f f", "0 10 0 8 0 8", 1, 0.3) +
             body("block 0.5 5 0.5 4 2 6", "density 1.5 neohookean 10.0 0.3",
                  "1.0 " + (flip ? options : "transfer apic " + options)) +
-            "variable way equal 0.4*time\nvariable sink equal -0.2*time\nvariable turn equal "
-            "0.3*time\nvariable r equal 1.2+0.3*time\n"
+            "variable way equal 0.4*time\nvariable sink equal -0.2*time\n"
+            "variable turn equal 0.3*time\nvariable r equal 1.2+0.3*time\n"
             "region held block 0 2 0 8 0 8\n"
             "region grip block -1 1.6 -1 9 -1 9 move v_way NULL v_sink\n"
             "region ball sphere 0.2 2.2 4.1 1.3 move v_way NULL v_sink\n"
             "region paddle block -1 1.6 -1 9 -1 9 rotate v_turn 1 3 4 0 0 1\n"
-            "region swelling sphere 0.2 2.2 4.1 v_r\n"
-            "region tool mpm/mesh " +
+            "region swelling sphere 0.2 2.2 4.1 v_r\nregion tool mpm/mesh " +
             ball.name + " 1.3 0.2 2.2 4.1 move v_way NULL v_sink\nregion still mpm/mesh " +
             ball.name + " 1.3 1.2 2.2 4.1\nfix " + replaced(c.walls, "w ", "w all mpm/boundary ") +
             "\nvelocity all set -0.3 -0.2 0.1\nvelocity all ramp vx -0.2 0.2 y 0 4 sum yes\n" +

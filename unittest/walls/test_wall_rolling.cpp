@@ -54,9 +54,8 @@ Motion roll(const Incline &incline, double h, const std::string &wall, int dim =
       "variable w equal -angmom(all,z)/inertia(all,zz)\n" +
       strprintf("variable d atom (x-%.15g)*%.15g+(y-%.15g)*%.15g\ncompute d all reduce min v_d\n",
                 foot[0], n[0], foot[1], n[1]) +
-      "variable low equal c_d\n"
-      "variable done equal \"time >= 0.6\"\nfix halt all halt 1 v_done == 1 error continue\nrun "
-      "0\n";
+      "variable low equal c_d\nvariable done equal \"time >= 0.6\"\n"
+      "fix halt all halt 1 v_done == 1 error continue\nrun 0\n";
   Scene run(scene);
   const double x0 = run.variable("x");
   Motion m = {0.0, 0.0, 1.0, 0.0};

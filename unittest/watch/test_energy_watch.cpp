@@ -135,8 +135,7 @@ TEST(Summary, TellsStateEnergyAndTimeStep)
   const std::string text = file_text(file.name);
   const std::regex limit("1 steps, time step 0\\.1, at the end 0\\.([0-9]+) of the limit"),
       state("volumes 0\\.75[0-9]* \\(point 5\\) to 1\\.2[45][0-9]* \\(point 9\\) times the initial "
-            "ones, "
-            "speeds up to 1\\.[0-9]* \\(point 17\\)");
+            "ones, speeds up to 1\\.[0-9]* \\(point 17\\)");
   EXPECT_TRUE(std::regex_search(text, limit)) << text;
   EXPECT_TRUE(std::regex_search(text, state)) << text;
   EXPECT_EQ(text.find("energy in play"), std::string::npos) << "too short a run";
@@ -149,9 +148,8 @@ TEST(Summary, TellsEnergies)
   MPI_Barrier(MPI_COMM_WORLD);
   const std::string text = file_text(file.name);
   const std::regex energy(
-      "energy at the end: kinetic ([0-9.]+), stored ([-.e0-9]+); since the start transfers "
-      "and friction took ([-.e0-9]+) \\(([-.e0-9]+) % of the energy in play\\), and numerical "
-      "errors "
+      "energy at the end: kinetic ([0-9.]+), stored ([-.e0-9]+); since the start transfers and "
+      "friction took ([-.e0-9]+) \\(([-.e0-9]+) % of the energy in play\\), and numerical errors "
       "added ([-.e0-9]+)");
   std::vector<std::smatch> found;
   for (std::sregex_iterator at(text.begin(), text.end(), energy), end; at != end; ++at)
