@@ -10,11 +10,6 @@
 #include "base/mpm_rows.h"
 #include "flow/mpm_flow.h"
 
-#include "atom.h"
-
-#include <map>
-#include <set>
-
 using namespace MPM_TEST;
 
 constexpr double H = 0.1;

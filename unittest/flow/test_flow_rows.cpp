@@ -14,8 +14,6 @@
 #include "flow/mpm_flow_rows.h"
 #include "flow/mpm_flow_spread.h"
 
-#include "comm.h"
-
 using namespace MPM_TEST;
 using namespace MPM_NS;
 

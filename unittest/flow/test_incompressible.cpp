@@ -10,7 +10,6 @@
 #include "mpm_lammps.h"
 
 #include "flow/fix_mpm_incompressible.h"
-#include "update.h"
 
 using namespace MPM_TEST;
 

@@ -27,8 +27,6 @@ void shear(MaterialPoint &p, double e, double dt = 1.0)
   steps(p, {0, g, 0, g, 0, 0, 0, 0, 0}, dt);
 }
 
-/* ---------------------------------------------------------------------- Johnson-Cook */
-
 const double SIGMAY = 490e6, BULK = 170e9;
 const std::string STEEL = "density 7850 eos linear 170e9 strength j2 77e9 490e6 ";
 
@@ -143,8 +141,6 @@ TEST(JohnsonCookDamage, SofteningIsLinearInWhatIsUsed)
   EXPECT_EQ(value(p, "damage"), 1.0);
 }
 
-/* ---------------------------------------------------------------------- Cockcroft-Latham */
-
 TEST(CockcroftLathamDamage, FailureStrain)
 {
   const auto material = make(STEEL + "damage cockcroft/latham 2e8");
@@ -179,8 +175,6 @@ TEST(CockcroftLathamDamage, FailureStrain)
   EXPECT_GT(value(d, "eplastic"), strain + 0.09);
   EXPECT_NEAR(value(d, "used"), used, 1e-12);
 }
-
-/* ---------------------------------------------------------------------- energy */
 
 /** Out, back into compression, and shear again. */
 Matrix through_failure(double t)
@@ -268,8 +262,6 @@ TEST(DamageEnergy, FailedPointsSlideWithFriction)
   }
   EXPECT_GT(p.pressure(), pressure);
 }
-
-/* ---------------------------------------------------------------------- Rankine */
 
 const double E_CONCRETE = 30e9, NU_CONCRETE = 0.2;
 const std::string CONCRETE =
@@ -423,8 +415,6 @@ TEST(RankineDamage, StrengthsAreWeibullDistributed)
   }
 }
 
-/* ---------------------------------------------------------------------- Grady-Kipp */
-
 // constant strain rate: D = alpha rate^m t^(m+3), and what follows from that
 TEST(GradyKippDamage, ConstantStrainRate)
 {
@@ -460,8 +450,6 @@ TEST(GradyKippDamage, ConstantStrainRate)
   EXPECT_NEAR(std::log(strengths[2] / strengths[1]) / std::log(100.0), 3 / (m + 3), 1e-3);
   EXPECT_NEAR(std::log(strengths[1] / strengths[0]) / std::log(100.0), 3 / (m + 3), 1e-3);
 }
-
-/* ---------------------------------------------------------------------- Gurson */
 
 struct Gurson {
   double K, sigmay, e0, n, q1, q2, fn, en, sn, fc, ff;

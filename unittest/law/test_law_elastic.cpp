@@ -302,8 +302,6 @@ TEST(Hyperelastic, TreloarRubber)
   }
 }
 
-/* ---------------------------------------------------------------------- all hyperelastic laws */
-
 std::vector<std::string> all_laws()
 {
   std::vector<std::string> laws;
@@ -441,8 +439,6 @@ TEST(Hyperelastic, Extremes)
   }
 }
 
-/* ---------------------------------------------------------------------- wave speeds */
-
 /** Largest eigenvalue of the acoustic tensors over many normals, by central differences of the
  *  first Piola-Kirchhoff stress: density_0 c^2 m = dP(m x N) N for the reference normal N = F^T n,
  *  which all waves, longitudinal and transverse, obey. */
@@ -511,8 +507,6 @@ TEST(Hyperelastic, WaveSpeedIsThatOfTheFastestWave)
     }
   }
 }
-
-/* ---------------------------------------------------------------------- anisotropic laws */
 
 /** Stiffness by probing: columns are the stresses of small strains, order xx yy zz xy xz yz with
  *  engineering shear strains. */

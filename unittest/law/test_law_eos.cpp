@@ -9,8 +9,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-/* ---------------------------------------------------------------------- shock */
-
 // behind a shock of particle speed u: P = density U u, J = 1 - u/U, E = density u^2/2
 TEST(Shock, SymmetricImpactStates)
 {
@@ -223,8 +221,6 @@ TEST(StiffenedGas, Cavitates)
   EXPECT_NEAR(once.stored_energy() - start, 0.5 * (1e6 - 1e5) * 0.2, 1e-3);
 }
 
-/* ---------------------------------------------------------------------- polynomial */
-
 TEST(Polynomial, PressureIsTheFormula)
 {
   const double A1 = 7e10, A2 = 8e10, A3 = 5e10, B0 = 2, B1 = 1.5, T1 = 6e10, T2 = 1e10, E0 = 1e9;
@@ -257,8 +253,6 @@ TEST(Polynomial, CutoffAndSpall)
   EXPECT_DOUBLE_EQ(q.pressure(), 0.0);
   EXPECT_EQ(q.history(2), 1.0);
 }
-
-/* ---------------------------------------------------------------------- JWL */
 
 // TNT (B.M. Dobratz, P.C. Crawford, LLNL Explosives Handbook, UCRL-52997, 1985)
 const double A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, OMEGA = 0.30, E0 = 7.0e9, D = 6930,

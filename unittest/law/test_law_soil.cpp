@@ -196,8 +196,6 @@ TEST(SoilLaws, ElasticBatches)
   }
 }
 
-/* ---------------------------------------------------------------------- Drucker-Prager */
-
 // equal to Mohr-Coulomb in triaxial compression, sigma_1 = N sigma_3 + 2 c sqrt(N), and there the
 // volume grows by M_psi per shear strain
 TEST(DruckerPrager, TriaxialCompression)
@@ -366,8 +364,6 @@ TEST(DruckerPrager, OrderOfTheReturn)
   EXPECT_LT(error[0], 0.02 * size(exact));
 }
 
-/* ---------------------------------------------------------------------- Mohr-Coulomb */
-
 /** Principal Kirchhoff stresses, largest first. */
 std::array<double, 3> principal(const MaterialPoint &p)
 {
@@ -531,8 +527,6 @@ TEST(MohrCoulomb, SofteningToNothing)
     }
 }
 
-/* ---------------------------------------------------------------------- Cam-Clay */
-
 constexpr double CC_G = 5e6, CC_M = 0.9, CC_LAMBDA = 0.2 / 1.8, CC_KAPPA = 0.04 / 1.8;
 const char *const clay = "density 1900 camclay 5e6 0.9 0.2 0.04 0.8 1e5 ";
 
@@ -634,8 +628,6 @@ TEST(CamClay, DrainedTriaxialReachesCriticalState)
   }
 }
 
-/* ---------------------------------------------------------------------- critical states, all */
-
 // returned stress on the ellipse, plastic strain normal to it
 TEST(CriticalState, ReturnIsOnTheSurfaceAndAssociated)
 {
@@ -715,8 +707,6 @@ TEST(Nacc, BreaksInTension)
   EXPECT_NEAR(pressure(p), K * std::sinh(3 * -value(p, "alpha")), 1e-9 * K);
 }
 
-/* ---------------------------------------------------------------------- mu(I) */
-
 TEST(MuI, SteadyShear)
 {
   const double mus = std::tan(20.9 * DEG), mu2 = std::tan(32.76 * DEG), I0 = 0.279, d = 5e-4;
@@ -755,8 +745,6 @@ TEST(MuI, OtherUnits)
   EXPECT_NEAR(q.wave_speed(), p.wave_speed(), 1e-9 * p.wave_speed());
 }
 
-/* ---------------------------------------------------------------------- snow */
-
 TEST(Snow, HardensInCompressionAndFallsApartInTension)
 {
   const double E = 1.4e5, nu = 0.2, mu = E / 2.4, lambda = E * nu / (1.2 * 0.6);
@@ -785,8 +773,6 @@ TEST(Snow, HardensInCompressionAndFallsApartInTension)
   EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], p.power, 1e-4 * p.power);
 }
 
-/* ---------------------------------------------------------------------- order */
-
 // first order in the step where the flow turns, for all laws
 TEST(SoilLaws, FirstOrderOnACurvedPath)
 {
@@ -814,8 +800,6 @@ TEST(SoilLaws, FirstOrderOnACurvedPath)
       EXPECT_GT(std::log2(error[0] / error[2]) / 2, 0.85) << error[0] << " " << error[2];
   }
 }
-
-/* ---------------------------------------------------------------------- material files */
 
 // what the numbers in the files were made from comes out again
 TEST(SoilFiles, GiveThePublishedStrength)

@@ -24,8 +24,6 @@ double shear_stress(const MaterialPoint &p)
   return ROOT3 * p.stress(3);
 }
 
-/* ---------------------------------------------------------------------- j2: hardening */
-
 const std::string J2 = "density 7800 eos linear 160e9 strength j2 80e9 300e6 ";
 constexpr double G = 80e9, SIGMAY = 300e6;
 
@@ -141,8 +139,6 @@ TEST(J2Hardening, BadInputIsRefused)
        {"kinematic 0 1", "out of range"}},
       J2);
 }
-
-/* ---------------------------------------------------------------------- j2: back stress */
 
 // Bauschinger effect: forward, backward, forward again, in closed form, in any number of steps.
 // Back stress from x0 at plastic strain 0, forward: x = c - (c - x0) exp(-gamma e), c = C/gamma
@@ -270,8 +266,6 @@ TEST(J2Kinematic, ReturnEndsOnTheYieldSurface)
     }
 }
 
-/* ---------------------------------------------------------------------- j2: rate */
-
 /** Overstress over strain rate: Y (r/rate)^n (Cowper and Symonds), or S (r/rate)^n (Perzyna). */
 struct Rate {
   const char *text;
@@ -385,8 +379,6 @@ TEST(J2Rate, RateIndependentLimit)
   }
 }
 
-/* ---------------------------------------------------------------------- Zerilli-Armstrong */
-
 struct ZerilliArmstrong {
   const char *form;
   double C0, C1, C2, C3, C4, C5, N;
@@ -497,8 +489,6 @@ TEST(ZerilliArmstrongLaw, BadInputIsRefused)
                            "form hcp 1 thermal constant 300", "form fcc 1 1 1"})
     EXPECT_THROW(make(start + text), MaterialError) << text;
 }
-
-/* ---------------------------------------------------------------------- Steinberg */
 
 const double SCG_G0 = 47.7e9, SCG_A = 2.83e-11, SCG_B = 3.77e-4;
 const std::string SCG = "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 "
@@ -617,8 +607,6 @@ TEST(SteinbergLaw, BadInputIsRefused)
   EXPECT_NO_THROW(make(start + "1 1 1 1 1 0 1e-3 tref 0 thermal constant 300"));
 }
 
-/* ---------------------------------------------------------------------- all strengths */
-
 // tension with free sides: the equivalent stress is the axial one, and the flow stress of the
 // strain, rate, temperature (and pressure of the step before) there; small strain by hand
 TEST(Strengths, UniaxialStress)
@@ -704,8 +692,6 @@ TEST(Strengths, RotationOnTopOfShear)
   }
 }
 
-/* ---------------------------------------------------------------------- thermal parts */
-
 TEST(Thermal, PlasticWorkHeats)
 {
   const double rho = 7800, cp = 460, chi = 0.85;
@@ -785,8 +771,6 @@ TEST(Thermal, ViscousWorkHeats)
   EXPECT_NEAR(p.work[VISCOUS], heat, 1e-9 * heat);
   EXPECT_NEAR(p.history(0) - 300, heat / (1000 * 4000), 1e-9);
 }
-
-/* ---------------------------------------------------------------------- material files */
 
 /** Flow stress in MPa after shear at a rate, from the temperature of the file. */
 double flow_stress(const std::string &name, double strain, double rate)

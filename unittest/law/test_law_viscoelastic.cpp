@@ -24,8 +24,6 @@ Matrix some_motion(double t)
 
 const Matrix STILL{};
 
-/* ---------------------------------------------------------------------- Kelvin-Voigt */
-
 // the sum of the elastic stress, which does not notice, and the viscous one
 TEST(KelvinVoigt, AddsToAnyLaw)
 {
@@ -105,8 +103,6 @@ TEST(KelvinVoigt, StableTimeStep)
     }
   }
 }
-
-/* ---------------------------------------------------------------------- Maxwell */
 
 const std::string FLUID = "density 1000 eos linear 1e6 viscosity maxwell ";
 

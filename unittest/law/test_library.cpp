@@ -81,8 +81,6 @@ TEST(Library, AllLawsAreTimed)
   expect_all(used, "bench_materials.cpp");
 }
 
-/* ---------------------------------------------------------------------- files */
-
 TEST(Library, MaterialFilesAreComplete)
 {
   std::set<std::string> names;
@@ -401,8 +399,6 @@ TEST(Library, LawsHaveNoUnitsOfTheirOwn)
     }
   }
 }
-
-/* ---------------------------------------------------------------------- extremes */
 
 /** Rates of strain, steps, volumes, and temperatures far from those of any test of the material. */
 void stand_extremes(const Material &material)

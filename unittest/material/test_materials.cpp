@@ -11,8 +11,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-/* ---------------------------------------------------------------------- */
-
 TEST(Math, FunctionsMatchLibrary)
 {
   std::mt19937 random(1);
@@ -148,8 +146,6 @@ TEST(Math, LogarithmAndExponentialOfTensors)
   }
 }
 
-/* ---------------------------------------------------------------------- kinematics, objectivity */
-
 TEST(Objectivity, FullTurnsLeaveStressAlone)
 {
   for (const auto &sample : samples) {
@@ -216,8 +212,6 @@ TEST(Objectivity, RotationOnTopOfShearRateForm)
   EXPECT_LT(error[2], 1e-5 * 1e6);
   expect_order(error, 2.0, 0.1);
 }
-
-/* ---------------------------------------------------------------------- elasticity */
 
 // E1(b): Jaumann rate oscillates, neo-Hookean does not
 TEST(Elastic, SimpleShearToGamma10)
@@ -288,8 +282,6 @@ TEST(Elastic, InitialStressIsKept)
   steps(p, {}, 1.0);
   for (int k = 0; k < 6; k++) EXPECT_NEAR(p.stress(k), 100.0 * (k + 1), 1e-10);
 }
-
-/* ---------------------------------------------------------------------- plasticity */
 
 double j2_yield(double sigmay, double H, double B, double N, double e)
 {
@@ -409,8 +401,6 @@ TEST(Plastic, BarelyBeyondYieldWithInfiniteHardeningSlope)
     EXPECT_LE(p.history(0), sigmay * beyond / (3 * G) * (1 + 1e-6) + 1e-18);
   }
 }
-
-/* ---------------------------------------------------------------------- Johnson-Cook */
 
 struct JohnsonCook {
   double A, B, N, C, rate0, M, melt, ref;
@@ -541,8 +531,6 @@ TEST(JohnsonCookLaw, MeltedMaterialHasNoStrength)
   EXPECT_GT(p.pressure(), 1e9);
 }
 
-/* ---------------------------------------------------------------------- equations of state */
-
 TEST(EquationOfState, PressureIsTheSlopeOfTheStoredEnergy)
 {
   for (const char *text : {"density 1000 eos linear 1e9", "density 1000 eos tait 2.2e9 7",
@@ -582,8 +570,6 @@ TEST(EquationOfState, TaitWater)
   EXPECT_EQ(p.pressure(), -9.9e4);
   EXPECT_EQ(p.stress(3), 0.0);
 }
-
-/* ---------------------------------------------------------------------- viscosity */
 
 TEST(Viscosity, Newtonian)
 {
@@ -635,8 +621,6 @@ TEST(Viscosity, NeverGivesEnergy)
     }
   }
 }
-
-/* ---------------------------------------------------------------------- energy */
 
 // stored + plastic + viscous = stress power at all times, with an error of second order in dt, on a
 // path with stretch, shear and spin that goes out and comes back, from rest to rest
@@ -693,8 +677,6 @@ TEST(Energy, DissipationHeatsTheEquationOfState)
   follow(s, there_and_back, 1.0, 1000);
   EXPECT_NEAR(s.history(1), s.work[PLASTIC], 1e-10 * s.work[PLASTIC]);
 }
-
-/* ---------------------------------------------------------------------- wave speed */
 
 /** Square of the longitudinal wave speed along n by central differences of the stress. */
 double speed2(const MaterialPoint &start, const std::array<double, 3> &n, double d = 1e-5)
@@ -915,8 +897,6 @@ TEST(InstructionSets, PartlyFilledBatches)
     }
   }
 }
-
-/* ---------------------------------------------------------------------- definition */
 
 // laws that declare so know the deformation gradient by its determinant, at all times
 TEST(Definition, OfFOnlyWhatIsDeclared)

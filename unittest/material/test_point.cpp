@@ -81,8 +81,6 @@ std::map<std::string, std::vector<double>> drive(const std::string &path,
   return table;
 }
 
-/* ---------------------------------------------------------------------- mixed control */
-
 TEST(MixedControl, NeoHookeanInUniaxialStress)
 {
   const auto material = make(RUBBER);
@@ -188,8 +186,6 @@ TEST(MixedControl, PlasticFlow)
   tension.stress[0] = 301e6;
   EXPECT_THROW(q.step(tension, 1.0), std::runtime_error);
 }
-
-/* ---------------------------------------------------------------------- paths of the command */
 
 TEST(Point, UniaxialStress)
 {
@@ -398,8 +394,6 @@ TEST(Point, LeavingARangeWarnsOnce)
   EXPECT_NE(found[1].find("pressure"), std::string::npos) << found[1];
   EXPECT_NE(found[1].find("at step 31 "), std::string::npos) << found[1];
 }
-
-/* ---------------------------------------------------------------------- errors */
 
 TEST(Point, ErrorsNameTheRemedy)
 {

@@ -315,8 +315,6 @@ TEST(Expansion, BadInputIsRefused)
       "density 1 ");
 }
 
-/* ---------------------------------------------------------------------- heat that is conducted */
-
 /** Equations of state with internal energy, dp/dE at J = 1, and bulk modulus without energy. */
 struct WithEnergy {
   const char *eos;
@@ -739,8 +737,6 @@ TEST(Vary, BadInputIsRefused)
       "density 1 ");
 }
 
-/* ---------------------------------------------------------------------- sources */
-
 // the work of damage becomes heat as far as one says so
 TEST(Sources, WorkOfDamage)
 {
@@ -989,8 +985,6 @@ TEST(Sources, DetonationProductsConduct)
   EXPECT_GT(w.work[VISCOUS], 1e8);
   EXPECT_NEAR(value(v, "temperature") - value(w, "temperature"), 300.0, 0.3);
 }
-
-/* ---------------------------------------------------------------------- melting */
 
 const std::string METAL =
     "density 1000 eos linear 1e6 strength j2 5e5 1e3 hardening linear 1e4 "

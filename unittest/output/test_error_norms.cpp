@@ -9,7 +9,6 @@
 
 #include "mpm_lammps.h"
 
-#include <fstream>
 #include <sstream>
 
 using namespace MPM_TEST;

@@ -675,7 +675,6 @@ TEST(Output, CellErrors)
   expect_error(run, "fix cells all mpm/cells grid density\n", "density");
 }
 
-// ---------------------------------------------------------------- compute mpm/energy
 struct Entry {
   /** Right-hand side of the balance. */
   static double gained(const double *v)

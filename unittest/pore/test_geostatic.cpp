@@ -8,8 +8,6 @@
 
 #include "mpm_lammps.h"
 
-#include "force.h"
-
 using namespace MPM_TEST;
 
 constexpr double G = 9.81, DENSITY = 1800.0;

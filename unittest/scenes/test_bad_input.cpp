@@ -669,8 +669,6 @@ TEST(RigidBodies, Refused)
   expect_error(flat + rigid, "in 2d, move a region with fix mpm/boundary");
 }
 
-// -------------------------------------------- bodies that overlap at the start
-
 /** What the good scene says of bodies that overlap, with this before its run. */
 static std::vector<std::string> overlaps(const std::string &lines)
 {

@@ -39,8 +39,6 @@ std::string plate(const std::string &options, const std::string &damage)
 
 const std::string brittle = "damage rankine 6.0 weibull 6 0.25 77 ";
 
-/* ---------------------------------------------------------------------- */
-
 TEST(Deletion, MassAndMomentumAreTold)
 {
   for (const std::string scheme : {"usl", "musl", "usf"}) {
@@ -138,8 +136,6 @@ TEST(Heat, OfFractureIsInTheInternalEnergy)
   EXPECT_LT(laws[1], 1.2 * laws[0]);
 }
 
-/* ---------------------------------------------------------------------- */
-
 // strengths are a matter of position and seed; a run on many ranks is that on one
 TEST(DamageOnRanks, SameAsSerial)
 {
@@ -183,8 +179,6 @@ TEST(DamageRestart, ContinuesBitwise)
     EXPECT_GT(largest, 0.0);
   }
 }
-
-/* ---------------------------------------------------------------------- */
 
 /** Energy per area of a crack over GC, in a bar that is pulled until it breaks at one row of cells
  *  that is a little weaker than the rest. */

@@ -258,8 +258,7 @@ PARAMETER_TEST(OnNodes, KeepMomentum, const char *,
     }
 }
 
-/* ---------- the largest stable time step: random velocities, all energy is kinetic at the start */
-
+// the largest stable time step: random velocities, all energy is kinetic at the start
 struct Limit {
   const char *options;
   double stable, unstable;    // in h/c
@@ -400,8 +399,7 @@ TEST(ManySteps, EnergyAndMomentum)
   }
 }
 
-/* --------------------------------- gravity from nothing to c^2/h: free fall is exact, no stress */
-
+// gravity from nothing to c^2/h: free fall is exact, no stress
 TEST(Gravity, FreeFall)
 {
   for (double g : {0.0, 1.0e-6, 1.0e-3, 1.0}) {
@@ -417,8 +415,7 @@ TEST(Gravity, FreeFall)
   }
 }
 
-/* ------------------------- the time step follows a wave speed that jumps by 100 within one step */
-
+// the time step follows a wave speed that jumps by 100 within one step
 TEST(AdaptiveTimeStep, FollowsWithinOneStep)
 {
   Scene run(plane("lj", "p p", "0 8 0 8", 1, 0.4) +

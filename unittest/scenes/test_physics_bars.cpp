@@ -133,8 +133,7 @@ TEST_P(SinglePoint, TenPeriods)
 
 INSTANTIATE_TEST_SUITE_P(Scheme, SinglePoint, ::testing::Values("usl", "usf", "musl"));
 
-/* ---- A2: first mode of a bar of length 25, fixed at one end. Period 10, energy constant. */
-
+// A2: first mode of a bar of length 25, fixed at one end. Period 10, energy constant.
 struct Vibration {
   double period, energy;    // relative to the exact ones
 };
@@ -601,8 +600,7 @@ TEST(GalileanBarLinear, ShowsTheDefect)
   EXPECT_GT(slow.error, 3.0 * smooth.error);
 }
 
-/* ----- speed of a pulse: sqrt(E/rho) in a bar, sqrt((lambda + 2 mu)/rho) between slipping walls */
-
+// speed of a pulse: sqrt(E/rho) in a bar, sqrt((lambda + 2 mu)/rho) between slipping walls
 struct PulseCase {
   const char *options, *law;
   double nu;

@@ -46,8 +46,7 @@ static double largest_stress(Scene &run)
   return s;
 }
 
-/* ----- C4: rigid translation and free fall, exact for every shape function, transfer and scheme */
-
+// C4: rigid translation and free fall, exact for every shape function, transfer and scheme
 class RigidMotion : public ::testing::TestWithParam<int> {
  protected:
   static void fly(int dim, const std::string &options, double g)
@@ -90,8 +89,7 @@ TEST_P(RigidMotion, FreeFall)
 
 INSTANTIATE_TEST_SUITE_P(Dimension, RigidMotion, ::testing::Values(2, 3));
 
-/* ---- a force on group all acts once on each body, in a field of its own or not (pitfall 4) */
-
+// a force on group all acts once on each body, in a field of its own or not (pitfall 4)
 TEST(TwoBodies, FallWithG)
 {
   for (const bool two_fields : {false, true}) {
@@ -389,8 +387,7 @@ PARAMETER_TEST(DrivenRotation, TenTurns, RotationCase, ValuesIn(driven_rotation_
   EXPECT_LT(measured("driven rotation, error of invariants", error_invariants / scale), 1.0e-10);
 }
 
-/* --------------------- C1: two elastic disks collide (Sulsky, Chen, Schreyer 1994, section 7.3) */
-
+// C1: two elastic disks collide (Sulsky, Chen, Schreyer 1994, section 7.3)
 struct DisksCase {
   const char *options;
   double energy_low, energy_high;      // E/E0 at t = 3.5
@@ -566,8 +563,7 @@ TEST(LedgerOnOff, SameTrajectory)
   }
 }
 
-/* ------------------------ the energy ledger closes at every step, for all transfers and schemes */
-
+// the energy ledger closes at every step, for all transfers and schemes
 TEST(Ledger, ClosesToRoundOff)
 {
   enum { KINETIC, STORED, EXTERNAL = 5, BOUNDARY, TRANSFER = 8, RESIDUAL = 10 };
@@ -631,8 +627,7 @@ TEST(Ledger, WorkOfGravity)
   }
 }
 
-/* ---------------- C2: a spinning disk, free in space. Angular momentum is an invariant of APIC. */
-
+// C2: a spinning disk, free in space. Angular momentum is an invariant of APIC.
 struct SpinCase {
   const char *options;
   double revolutions;

@@ -71,8 +71,7 @@ std::string strip(double length, double h, const std::string &options, int types
                 h, options.c_str());
 }
 
-/* -------------------------------- A5: Sod's shock tube (G.A. Sod, J. Comput. Phys. 27 (1978) 1) */
-
+// A5: Sod's shock tube (G.A. Sod, J. Comput. Phys. 27 (1978) 1)
 struct SodErrors {
   double density, plateau, shock, energy;
 };
@@ -205,8 +204,6 @@ TEST(Noh, Planar)
   measured("Noh density at the wall (wall heating)", wall);
 }
 
-/* ---------------------------------------------------------------------- */
-
 // the pressure of a gas is there before the first step: at rest between walls it stays at rest
 TEST(Gas, RestsFromTheFirstStep)
 {
@@ -314,8 +311,7 @@ TEST(Hugoniot, SymmetricImpactAt7KilometersPerSecond)
   EXPECT_LT(measured("J1 overshoot", top / 94.983e9), 1.1);
 }
 
-/* -------------- a charge of TNT, lit at a wall: front on time, Chapman-Jouguet pressure, energy */
-
+// a charge of TNT, lit at a wall: front on time, Chapman-Jouguet pressure, energy
 TEST(Detonation, OfTnt)
 {
   const double D = 6930, pcj = 21.0e9, length = 0.1;

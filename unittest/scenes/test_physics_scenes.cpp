@@ -126,8 +126,7 @@ PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
   EXPECT_DOUBLE_EQ(run.sums().mass, start.mass);
 }
 
-/* ------------------- pitfall 9: the wave speed of a Tait liquid, and a time step that is stable */
-
+// pitfall 9: the wave speed of a Tait liquid, and a time step that is stable
 TEST(Tait, WaveSpeed)
 {
   // K = 100, gamma = 7, density 1: c = 10 at rest, c^2 = K (density ratio)^(gamma - 1)
@@ -202,8 +201,7 @@ TEST(Tait, TimeStepIsStable)
   }
 }
 
-/* ----- K1(a): a grain (pair style granular) hits a free block of material points off its centre */
-
+// K1(a): a grain (pair style granular) hits a free block of material points off its centre
 static std::string grain_on_block(const std::string &options, const std::string &tangential)
 {
   return strprintf("units si\nboundary f f f\natom_style hybrid sphere mpm\ncomm_modify vel yes\n"

@@ -60,8 +60,7 @@ static std::vector<std::string> all_variants()
   return all;
 }
 
-/* --------------------------- a rectangle that is thrown, spins, and vibrates: mass and momentum */
-
+// a rectangle that is thrown, spins, and vibrates: mass and momentum
 static std::string rectangle(const std::string &block, const std::string &options)
 {
   return plane("si", "f f", "-3 3 -3 3", 1, 0.04) +
@@ -348,8 +347,6 @@ TEST(Fracture, EvenStretch)
                 0.1 * c.stretch);
   }
 }
-
-/* ---------------------------------------------------------------------- equivalences */
 
 // flip 0 is pic
 TEST(Equivalent, FlipZeroIsPic)

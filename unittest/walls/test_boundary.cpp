@@ -101,8 +101,6 @@ std::string block_on_floor(const std::string &options, const std::string &wall)
       wall + "\ntimestep 0.01\nrun 0\n";
 }
 
-/* ---------------------------------------------------------------------- velocity at the wall */
-
 /** A wall, and how far the lattice is off: 0 with a plane of nodes in it. There walls hold to
  *  round-off; between planes of nodes, up to nodes that hardly reach the wall. */
 struct WallCase {
@@ -419,8 +417,7 @@ TEST(Work, OfAShakenBase)
   }
 }
 
-/* ------------------------------------------- friction: benchmark F2, block on an inclined plane */
-
+/** A block on an inclined plane (benchmark F2). */
 static std::string incline(double mu)
 {
   return plane("si", "f f", "0 4.5 0 1 -0.1 0.1", 1, 0.02) +
@@ -487,8 +484,6 @@ run 0
   EXPECT_NEAR(run.variable("d"), d0, 0.01);    // sinks in by less than h/5
 }
 
-/* ---------------------------------------------------------------------- separation */
-
 class Separate : public ::testing::TestWithParam<std::string> {
  protected:
   static std::string scene(double bottom, const std::string &wall, double v)
@@ -532,8 +527,7 @@ INSTANTIATE_TEST_SUITE_P(Transfer, Separate,
                                 "shape linear transfer flip 1.0 scheme musl",
                                 "transfer apic origin 0 0.02"));
 
-/* ------------------------------- benchmark G3: elastic column under gravity that is switched on */
-
+// benchmark G3: elastic column under gravity that is switched on
 static std::string column_scene(const std::string &options, const std::string &walls, double width)
 {
   // M = E (1 - nu)/((1 + nu)(1 - 2 nu)) = 1.346154e6, c = 36.69 m/s
@@ -649,8 +643,6 @@ TEST(Channel, NarrowOnesAreExact)
     for (std::size_t k = 0; k < wide.size(); k++) EXPECT_NEAR(narrow[k], wide[k], 1.0e-13);
   }
 }
-
-/* ---------------------------------------------------------------------- motion */
 
 TEST(Rotation, AFullTurnKeepsTheRadius)
 {
@@ -1014,9 +1006,8 @@ TEST(Motion, BallThatMovesAndGrows)
   }
 }
 
-/* ------------------------------ regions: velocity of the nodes inside, against the known normal. Material is in them
-   as in a grip: there nodes act, and lines where it is in front */
-
+// Velocity of the nodes in regions, against the known normal. Material is in them as in a grip:
+// there nodes act, and lines where it is in front
 TEST(Regions, SlipNormals)
 {
   // direction from a center, or from an axis where it is not a number, and distance
@@ -1501,8 +1492,6 @@ static const WallsCase decomposition_cases[] = {
     {"", "xlo ylo slip", "region flying separate friction 0.2"}};
 INSTANTIATE_TEST_SUITE_P(Walls, Decomposition, ValuesIn(decomposition_cases));
 
-/* ---------------------------------------------------------------------- several fields */
-
 TEST(Fields, KeywordField)
 {
   Scene run(plane("lj", "f f", "0 20 0 10", 2, 0.5) +
@@ -1518,8 +1507,6 @@ run 1
   EXPECT_NEAR(v2, -1.6, 1.0e-12);
   EXPECT_GT(v1, -1.5);
 }
-
-/* ---------------------------------------------------------------------- time step */
 
 static const std::string dt_scene = space("lj", "p p p", "0 8 0 8 0 8") + R"(
 fix grid all mpm 1.0
@@ -1705,8 +1692,6 @@ TEST(TimeStep, ChangedStateIsANewStart)
   run.commands("velocity all set 0 0 0\nrun 0\n");
   EXPECT_GT(run.lmp->update->dt, 0.9 * before);
 }
-
-/* ---------------------------------------------------------------------- bad input */
 
 TEST(BadInput, IsRefusedWithTheReason)
 {

@@ -10,7 +10,6 @@
 #include "meshgrid/mesh_grid_testing.h"
 
 #include "atom_vec.h"
-#include "comm.h"
 #include "field/mpm_point_map.h"
 
 #include <regex>
