@@ -34,8 +34,7 @@ std::string gap(int dim, int n, double density, const char *units, double g, dou
       strprintf("fix g all gravity %.17g vector 0 -1 0\n", g);
 }
 
-/** Water 0.4 deep in a tank of 2 x 0.8, with a box of 0.4 x 0.2 of half its density about a place
- *  that is no node. */
+/** Water 0.4 deep in a tank of 2 x 0.8, a box of 0.4 x 0.2 of half its density off the nodes. */
 std::string boat(double h, double density, double y, const std::string &options)
 {
   const auto hull = strprintf("block 0.8137 1.2137 %.17g %.17g INF INF", y - 0.1, y + 0.1);
@@ -48,8 +47,7 @@ std::string boat(double h, double density, double y, const std::string &options)
       "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.01\n";
 }
 
-// what is lighter or heavier than water sets this in motion, too: the mass of a body and its added
-// mass, which for a light one is all that there is
+// also what is lighter or heavier than water sets it in motion: mass and added mass
 SERIAL_TEST(Body, IsReleased)
 {
   constexpr double a = 0.2, b = 0.47, g = 9.81;
@@ -83,8 +81,7 @@ SERIAL_TEST(Units, IsReleased)
   }
 }
 
-// what is pushed goes on, in a flow that follows it without friction: it must not be braked by the
-// number of steps, as with apic, which took 15 and 38 % here
+// what is pushed goes on, whatever the number of steps; apic took 15 and 38 % here
 SERIAL_TEST(Body, GoesOn)
 {
   for (const int nsteps : {100, 400}) {

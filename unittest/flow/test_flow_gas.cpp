@@ -31,8 +31,7 @@ double frequency(const std::vector<double> &t, const std::vector<double> &of)
                           : 0.0;
 }
 
-/** Water of the density 1 and the length 0.4 in the middle of a closed tube of the length 1, which
- *  has n cells in its width of 0.2. */
+/** Water of density 1 and length 0.4 in a closed tube of length 1, n cells in its width of 0.2. */
 std::string slug(int dim, int n, double offset, const std::string &units = "lj")
 {
   const double h = 0.2 / n;

@@ -189,8 +189,7 @@ SERIAL_TEST(Bed, DoesNotDependOnTheStep)
   EXPECT_NEAR(measured("flux in long steps / in short ones", flux[1] / flux[0]), 1.0, 1e-3);
 }
 
-// In water at rest a grain feels the weight of what it displaces, to the last digits, and the floor
-// bears it; so do grains on the floor
+// In water at rest a grain feels the weight of what it displaces, and the floor bears both
 SERIAL_TEST(Tank, BearsTheBuoyancy)
 {
   const double d = 0.3, g = 9.81, area = 0.25 * PI * d * d;
@@ -229,8 +228,7 @@ SERIAL_TEST(Grain, GoesWithFluidThatAccelerates)
       1.0, 1e-6);
 }
 
-// What grains get the fluid loses, to round-off: points that are even tell cells their momentum
-// without a difference, so in the first step
+// What grains get the fluid loses, to round-off in the first step, as points are even
 SERIAL_TEST(Grain, KeepsMomentum)
 {
   for (const int dim : {2, 3})

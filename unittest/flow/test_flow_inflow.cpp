@@ -53,8 +53,7 @@ std::string filled(double h, const char *mouth, const char *velocity,
       "\nfix g all gravity 9.81 vector 0 -1 0\n";
 }
 
-// A channel that is as wide as its mouth: all points have the velocity of the inflow, to the last
-// digits, and as much goes as comes; in all directions
+// A channel as wide as its mouth: all points have the velocity of the inflow, in all directions
 SERIAL_TEST(Channel, IsSteady)
 {
   for (const int dim : {2, 3})
@@ -142,8 +141,7 @@ SERIAL_TEST(Channel, BecomesPoiseuille)
   }
 }
 
-// What comes out of a mouth makes the water rise by its volume: at a wall below the surface, amid
-// the water, and from above; the section is no multiple of cells
+// What comes out of a mouth, at a wall, amid the water, or from above, makes it rise by its volume
 SERIAL_TEST(Tank, Rises)
 {
   struct Case {

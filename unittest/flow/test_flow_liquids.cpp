@@ -338,8 +338,7 @@ SERIAL_TEST(Shear, Poiseuille)
     }
 }
 
-// A wave of shear in two layers decays as theory says, by what friction takes from it: with u =
-// sin(k y) in each, lambda = nu k^2, and one stress
+// A wave of shear in two layers: u = sin(k y) in each, lambda = nu k^2, and one stress
 SERIAL_TEST(Shear, Decay)
 {
   LONG_CASE();

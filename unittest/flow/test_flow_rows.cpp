@@ -26,8 +26,7 @@ double noise(const Grid &grid, int64_t cell)
   return std::sin(12.9898 * i[0] + 78.233 * i[1] + 37.719 * i[2] + 1.0);
 }
 
-/** Cells in a box of n cells along each axis, by points in all of them, and coefficients of their
- *  faces and their surface. */
+/** A box of n cells along each axis, with coefficients of their faces and their surface. */
 struct Cells {
   Scene scene;
   MPMFlowLattice cells;

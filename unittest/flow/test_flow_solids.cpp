@@ -137,8 +137,7 @@ class Squares {
   std::vector<std::array<tagint, 4>> list;
 };
 
-/** A soft disk of Zhao, Freund and Moser (J. Comput. Phys. 227 (2008) 3114) in a cavity with n
- *  cells, whose lid moves. */
+/** A soft disk in a cavity with n cells (Zhao, Freund, Moser, J. Comput. Phys. 227 (2008) 3114). */
 std::string cavity(int n, double density = 1.0, const std::string &more = "")
 {
   return "atom_modify map array\n" + plane("lj", "f f", "0 1 0 1", 1, 0.02) +
@@ -258,8 +257,7 @@ SERIAL_TEST(FlowSolids, HeavyDiskSinks)
   }
 }
 
-// a heavy strip that hangs in a fluid at rest keeps its length, as stress along its sides does not
-// go: by L^2 (density difference) g/8G
+// a heavy strip hangs in a fluid at rest: it stretches by L^2 (density difference) g/8G
 SERIAL_TEST(FlowSolids, StripHangs)
 {
   for (const double at : {0.0, 0.5}) {

@@ -54,8 +54,7 @@ std::array<double, 3> momenta(Scene &run)    // and the angular one about the or
   return sum;
 }
 
-// H2: from rest to a time at which both are not steady, with an error of first order in the step,
-// and to the steady flow in a few steps of any length
+// H2: from rest to an unsteady time, of first order in the step, and to steady flow in any steps
 SERIAL_TEST(Plates, CouetteAndPoiseuille)
 {
   const auto at_half = [](Scene &scene) {

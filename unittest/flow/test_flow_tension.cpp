@@ -12,8 +12,7 @@ using namespace MPM_TEST;
 
 enum { KINETIC = 5, FASTEST = 6, WALLS = 7 };
 
-/** A drop of radius, density, and tension 1 with n cells in its radius, about a place. r = c (1 +
- *  eps cos 2 theta) in 2d. */
+/** A drop of radius, density, and tension 1, n cells in its radius. r = c (1 + eps cos 2 theta). */
 std::string drop(int dim, int n, double eps, double x, double y, double mu)
 {
   const double h = 1.0 / n, c = 1.0 / std::sqrt(1.0 + 0.5 * eps * eps);

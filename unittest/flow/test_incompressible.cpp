@@ -137,8 +137,7 @@ void measure(const std::vector<double> &t, const std::vector<double> &m, double 
       std::log((peaks[0] + peaks[1]) / (peaks[last - 1] + peaks[last])) / (times[last] - times[1]);
 }
 
-/** Largest error of the velocity along x in the middle of a cavity of n cells at the heights y:
- *  that of a line through the points next to each. */
+/** Largest error of the velocity along x at the heights y in the middle of a cavity of n cells. */
 double error_of_profile(Scene &run, int n, const std::vector<double> &y,
                         const std::vector<double> &u)
 {
@@ -332,8 +331,7 @@ SERIAL_TEST(Film, SurfaceAnywhere)
     }
 }
 
-// where the surface goes from one layer of cells to the next, up and down from column to column: to
-// first order in the spacing the film of the mean depth
+// the surface goes up and down by a layer of cells: to first order the film of the mean depth
 SERIAL_TEST(Film, SurfaceOfSteps)
 {
   for (const int n : {10, 20}) {
@@ -464,8 +462,7 @@ TEST(Cavity, SharpPathsRanksAndRestart)
   EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
 }
 
-// at rest below a lid: what is next to this is as fast after the first step, but nothing is faster,
-// also with more than a cell per step
+// at rest below a lid: nothing is faster than the lid, also with more than a cell per step
 SERIAL_TEST(Cavity, Begins)
 {
   for (const char *const step : {"fix dt all mpm/dt 0.8 every 1\n", "timestep 0.078\n"}) {

@@ -334,8 +334,7 @@ TEST(Hyperelastic, StressIsTheSlopeOfTheEnergy)
   }
 }
 
-// No energy comes out of a closed cycle. The trapezoidal rule converges exponentially for a smooth
-// cycle: the error is round-off.
+// No energy comes out of a closed smooth cycle: the trapezoidal rule is exact to round-off.
 TEST(Hyperelastic, ClosedCycle)
 {
   const auto cycle = [](double a) {
@@ -508,8 +507,7 @@ TEST(Hyperelastic, WaveSpeedIsThatOfTheFastestWave)
   }
 }
 
-/** Stiffness by probing: columns are the stresses of small strains, order xx yy zz xy xz yz with
- *  engineering shear strains. */
+/** Stiffness by probing: columns are stresses of small strains xx yy zz xy xz yz (engineering). */
 Eigen::Matrix<double, 6, 6> stiffness(const Material &material)
 {
   const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};

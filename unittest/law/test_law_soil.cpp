@@ -15,8 +15,7 @@ constexpr double DEG = M_PI / 180.0;
 
 /* ---------------------------------------------------------------------- laboratory tests */
 
-/** One step with an axial rate along x and lateral rates along y (and z, unless that is held) such
- *  that the stress along y is the given one. */
+/** One step with an axial rate along x and lateral rates that give this stress along y. */
 void step_lateral(MaterialPoint &p, double axial, double lateral_stress, double dt,
                   bool plane = false)
 {
@@ -196,8 +195,7 @@ TEST(SoilLaws, ElasticBatches)
   }
 }
 
-// equal to Mohr-Coulomb in triaxial compression, sigma_1 = N sigma_3 + 2 c sqrt(N), and there the
-// volume grows by M_psi per shear strain
+// equal to Mohr-Coulomb in triaxial compression; there the volume grows by M_psi per shear strain
 TEST(DruckerPrager, TriaxialCompression)
 {
   for (const double c : {0.0, 2e4})

@@ -102,8 +102,7 @@ TEST(J2Hardening, StraightPath)
   }
 }
 
-// Considere: a bar in tension carries most when the slope of the flow stress equals it; values of
-// Weldox 460 E without change of volume
+// Considere: a bar carries most when the slope of the flow stress equals it (Weldox 460 E)
 TEST(J2Hardening, ConsidereLoad)
 {
   const double E = 211e9, nu = 0.33;

@@ -33,8 +33,7 @@ Matrix nominal(const MaterialPoint &p)
   return P;
 }
 
-/** Yarns of unit length that were at 0 and theta degrees, turned towards each other by the same
- *  angle, gamma in all. */
+/** Unit yarns that were at 0 and theta degrees, turned towards each other, gamma in all. */
 Matrix pinned(double theta, double gamma)
 {
   const double a = 0.5 * gamma, t = theta * DEGREE, b = t - a;

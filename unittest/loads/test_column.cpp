@@ -74,8 +74,7 @@ double difference(Scene &run, int axis, int steps, double top = 19.0)
   return off / most;
 }
 
-// Level ground in two layers moves like its column to 1 %, next to its sides and in the middle;
-// with dashpots of a far side at rest, or walls, it does not
+// Level ground in two layers moves like its column to 1 %, but not with a far side at rest or walls
 struct Sides {
   const char *options;
   bool shear;
@@ -103,8 +102,7 @@ SERIAL_TEST(Level, NeedsTheFreeField)
   }
 }
 
-// The column is a strip of ground that is periodic along x, whatever its width is, and which laws
-// it has; walls see single lines of nodes
+// The column is a periodic strip of ground of any width and laws; walls see single lines of nodes
 SERIAL_TEST(Column, IsAStripWithoutEnd)
 {
   const std::string free = "velocity all ramp vx 0 1 y 0 20\n"
@@ -191,8 +189,7 @@ SERIAL_TEST(Level, OtherPointsInTheColumn)
   EXPECT_LT(measured("ground against column", difference(run, 0, 1000)), 0.01);
 }
 
-// Forces of the free field hold the ground where the column is sheared: those of both sides cancel
-// but for the moment; the ledger closes
+// Forces of the free field hold the ground: those of both sides cancel but for the moment
 SERIAL_TEST(Level, ForcesAndWork)
 {
   Scene run(site("transfer aflip 1.0 gain error 0.05", true) + LAYERS + FREE +
@@ -209,8 +206,7 @@ SERIAL_TEST(Level, ForcesAndWork)
   run.lmp->modify->get_compute_by_id("e")->compute_scalar();
   const double *const e = run.compute_vector();
   EXPECT_NEAR(measured("residual", e[10] / (e[0] + e[1])), 0.0, 1e-11);
-  // the energy watch knows the work of the stress at the sides, too: what it tells is what the
-  // ledger has in transfer and integration
+  // the energy watch knows the work at the sides: it tells transfer and integration of the ledger
   const double before = e[8] + e[9];
   const ScratchFile file("log");
   EXPECT_EQ(run.error("log " + file.name + "\nrun 1200\nlog none\n"), "");

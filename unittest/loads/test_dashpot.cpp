@@ -441,8 +441,7 @@ TEST(Dashpot, WarnsOfTwoOnOneFace)
   EXPECT_EQ(warnings("fix two all mpm/dashpot region top 1 0.5").size(), 0);
 }
 
-// Velocities that are mapped back and moving least squares: 14 % of the amplitude of a layer on
-// rock was missing, and 19 % with half the spacing
+// Musl and moving least squares: 14 % of the amplitude of a layer was missing, 19 % with h/2
 SERIAL_TEST(Dashpot, WarnsOfSchemesThatTakeWaves)
 {
   const auto warnings = [](const std::string &options) {

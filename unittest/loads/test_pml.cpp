@@ -103,8 +103,7 @@ Echo echo(const std::string &name, const Incoming &w, const std::array<Velocitie
   const double kp = has_p ? sqrt(omega * omega - ky * ky) : 0.0,
                ks = sqrt(omega * omega / (CS * CS) - ky * ky), kx = k * cos(theta);
   const auto with = send(w, w.length + cells, far);
-  // of waves exp(i (kx x + ky y)) with velocities along the given direction. The packet of the
-  // strip that goes on has lost as much on its way
+  // of waves exp(i (kx x + ky y)) with velocities along the direction; the strip loses as much
   const auto sum_of = [&](const Velocities &velocities, int x_hi, double k, double ex, double ey) {
     std::complex<double> sum = 0.0;
     for (const auto &[place, v] : velocities)
@@ -158,8 +157,7 @@ std::string dashpots(int length)
       CS);
 }
 
-/** Amplitudes of the pressure and shear waves that come back from dashpots with sigma_xx = -rho c_p
- *  v_x and sigma_xy = -rho c_s v_y,
+/** Amplitudes of waves from dashpots, sigma_xx = -rho c_p v_x and sigma_xy = -rho c_s v_y,
  *     for one that comes with amplitude 1: see Lysmer and Kuhlemeyer, J. Eng. Mech. Div. 95 (1969)
  *     859. */
 std::array<double, 2> echo_of_dashpots(const Incoming &w)

@@ -280,8 +280,7 @@ inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of
     EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
 }
 
-/** A wrong definition, with a part or a pattern of the error message. word: number of the word that
- *  the error is about (-1: not checked). */
+/** A wrong definition, a part or pattern of the message. word: which one it is about (-1: any). */
 struct Refusal {
   std::string text;
   const char *message;

@@ -806,8 +806,7 @@ __attribute__((noinline)) void spoil_stack()
   for (auto &value : room) value = NAN;
 }
 
-/** Stress, wave speed, energy and history of some points of a batch of n after random steps,
- *  and of full batches also the work. */
+/** Stress, wave speed, energy, history of points of a batch of n; of full batches also the work. */
 std::vector<Row> trajectory(const Material &material, int n, int points)
 {
   MaterialPoint p(material, n, 0.1);

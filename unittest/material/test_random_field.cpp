@@ -394,8 +394,7 @@ TEST_F(Random, TooShortLengths)
   EXPECT_EQ(message(0.25, 0.5), "");
 }
 
-// factors are those of the field at the places where points are made, on any number of ranks; they
-// stay with their points, also through a restart file
+// factors are those of the field where points are made, on any ranks, and stay after a restart
 TEST_F(Random, FixAndRestart)
 {
   const std::string scene = MPM_TEST::space("si", "f f f", "0 8 0 8 0 8", 1, 0.3) +
@@ -453,8 +452,7 @@ TEST_F(Random, FixAndRestart)
   }
 }
 
-// parameters of all kinds, each point with its own: the temperature that the same plastic work
-// gives, the stress of a term, and the mass
+// parameters of all kinds, each point with its own: temperature, stress of a term, mass
 TEST_F(Random, FixWithEveryKindOfParameter)
 {
   Scene run(MPM_TEST::space("si", "f f f", "0 10 0 10 0 10", 1, 0.3) +

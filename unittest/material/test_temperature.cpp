@@ -936,8 +936,7 @@ TEST(Sources, DetonationProducts)
        {tnt + "thermal adiabatic 1000 293 vary CP table 200 1 4000 2", "constant CP"}});
 }
 
-// what conduction brings to detonation products is in their temperature and internal energy once,
-// and so in the pressure, before, while, and after they burn
+// heat that is conducted into detonation products counts once, before, while, and after they burn
 TEST(Sources, DetonationProductsConduct)
 {
   const double A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = 7e9,

@@ -71,8 +71,7 @@ inline Soup box(const Point &lo, const Point &hi)
   return soup;
 }
 
-/** The surface with x moved by share times z, and y by half of that. The inertia tensor of a
- *  sheared box has all components. */
+/** The surface with x moved by share times z, y by half of that: its inertia has all components. */
 inline Soup sheared(Soup soup, double share)
 {
   for (auto &t : soup)
@@ -221,8 +220,7 @@ inline std::vector<Solid> solids()
        26000}};
 }
 
-/** The triangles as an OBJ file. Every other triangle refers to its corners by negative numbers,
- *  which count backward from the last corner. */
+/** The triangles as an OBJ file, every other one by negative numbers, from the last corner back. */
 inline std::string obj_of(const Soup &soup)
 {
   std::string s = "# a comment\no thing\n";

@@ -93,8 +93,7 @@ std::string failure(const std::function<void()> &f)
   return "";
 }
 
-// Functions sum to one and give back positions and linear functions at any place, found from any
-// hint; gradients are their derivatives
+// Functions sum to one and give back linear functions, from any hint; gradients are derivatives
 TEST_P(Kinds, FunctionsAreLinearlyComplete)
 {
   const auto [dim, simplices] = GetParam();

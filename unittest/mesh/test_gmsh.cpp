@@ -83,8 +83,7 @@ TEST(Mesh, Format22)
   EXPECT_THROW(mesh.keep(3), std::runtime_error);
 }
 
-// a unit cube as a hexahedron, a tetrahedron on it, and a quadrangle of its surface; nodes in two
-// blocks, one with parameters; a section of data
+// a cube as a hexahedron, a tetrahedron, and a quadrangle; two blocks of nodes, a section of data
 TEST(Mesh, Format41)
 {
   Mesh mesh =

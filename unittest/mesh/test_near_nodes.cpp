@@ -46,8 +46,7 @@ TEST(NearNodes, ShortestPaths)
   EXPECT_GT(nodes.memory(), 0.0);
 }
 
-// the place in a triangle that is farthest from its corners, by looking at many of them; known for
-// equal sides, right angles, and all but flat ones
+// the place in a triangle that is farthest from its corners, by a search and for known triangles
 TEST(TriangleGap, FarthestFromCorners)
 {
   EXPECT_NEAR(triangle_gap(1.0, 1.0, 1.0), 1.0 / std::sqrt(3.0), 1e-12);

@@ -152,8 +152,7 @@ SERIAL_TEST(MeshContact, BarsThatCollide)
   EXPECT_GT(lost[0] / lost[1], 1.25);    // a wave front, which is never smooth
 }
 
-// What lies on each other, at rest: each bears the weight of what is above. The upper two lie side
-// by side, so that three bodies meet at nodes
+// At rest each bears the weight above; the upper two are side by side: three bodies at a node
 SERIAL_TEST(MeshContact, BlocksAtRest)
 {
   for (const Kind kind : {QUADS, TRIANGLES}) {

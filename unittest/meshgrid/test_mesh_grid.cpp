@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 600
 
-// Fix mpm/mesh: points on a mesh of triangles, quadrangles, tetrahedra, or hexahedra. Case S2 of
-// the benchmarks, and Lame's solution of a thick tube.
+// Fix mpm/mesh: points on a mesh of any cells. Benchmark S2, Lame's solution of a thick tube.
 
 #include "meshgrid/mesh_grid_testing.h"
 #include "mpm_lammps.h"

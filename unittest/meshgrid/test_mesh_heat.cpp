@@ -109,8 +109,7 @@ SERIAL_TEST(MeshHeat, Ring)
   }
 }
 
-// A slab that is insulated on one side and cooled by convection on the other, Bi = 1 (benchmark
-// M2a), in steps below and above the explicit limit
+// A slab cooled by convection, Bi = 1 (M2a), in steps below and above the explicit limit
 SERIAL_TEST(MeshHeat, Slab)
 {
   const ScratchFile file("slab.msh", gmsh(QUADS, {20, 2, 0}, [](double x, double y, double) {
@@ -138,8 +137,7 @@ SERIAL_TEST(MeshHeat, Slab)
   }
 }
 
-// Heat comes in on one side and leaves by convection on the other: T = T_0 + q/h + q (1 - x)/k,
-// with k along x of a material that is turned by a right angle
+// Heat in on one side, convection on the other: T = T_0 + q/h + q (1 - x)/k, k of a turned material
 SERIAL_TEST(MeshHeat, FluxAndConvection)
 {
   const ScratchFile file("block.msh", block(TETRAHEDRA, 2));

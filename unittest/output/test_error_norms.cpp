@@ -47,8 +47,7 @@ TEST(ErrorNorms, AreThoseOfTheDefinition)
   EXPECT_NEAR(run.evaluate("c_e[5]"), 0.1, 1e-14);
 }
 
-// points of the group only, with their volumes as weights, at unwrapped positions; an error that is
-// not a number stays one, whichever point has it
+// points of the group, by volume, at unwrapped positions; an error that is no number stays one
 TEST(ErrorNorms, VolumesGroupsAndImages)
 {
   Scene run(space("lj", "p p p", "0 4 0 4 0 4", 3) + R"(

@@ -68,8 +68,7 @@ inline double water_difference(Scene &a, Scene &b)
                   measured("of saturations", most[1]));
 }
 
-/** Expects the same results on one rank and on all: states of points, volume of the water that came
- *  in, and pressures and saturations within this difference. */
+/** Expects states, water that came in, pressures, and saturations of one rank, within this. */
 inline void expect_same_on_ranks(const std::string &scene, double difference)
 {
   OnRanks run(scene + PORE, "run 300\n");

@@ -77,8 +77,7 @@ inline void run_to(Scene &run, double end, double part = 0.5)
   run.commands(strprintf("fix dt all mpm/dt %g until %.17g\nrun 1000000\n", part, end));
 }
 
-/** Terzaghi's solution for a column of height 1: pressure at the depth z below the drained top,
- *  relative to the initial pressure. T: time factor. */
+/** Terzaghi's pressure at depth z below the drained top of a column of height 1, over the first. */
 inline double terzaghi(double z, double T)
 {
   double sum = 0.0;

@@ -127,8 +127,7 @@ double vertical(const Scene::State &s)
   return s.stress[1];
 }
 
-// Velocities of soil and water that fill a periodic box fade towards each other with the rate of
-// drag, exactly, and their momentum stays.
+// Velocities of soil and water in a periodic box fade exactly with the rate of drag.
 PARAMETER_TEST(Relaxation, IsExact, std::string,
                Values("transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme musl",
                       "transfer apic scheme musl", "transfer aflip 1.0", "shape cubic",
@@ -220,8 +219,7 @@ PARAMETER_TEST(Still, StaysAtRest, std::string,
   EXPECT_LT(fabs(run.compute_vector()[10]), 1.0e-12);
 }
 
-/** A bed of soil of 0.5 m under water up to this height, whose state at rest mpm_geostatic gives.
- *  The floor is off nodes by a part of a cell. */
+/** A bed of 0.5 m under water up to this height, at rest by mpm_geostatic, its floor off nodes. */
 std::string bed(int dim, double h, double height, const std::string &options, double offset)
 {
   Column c;

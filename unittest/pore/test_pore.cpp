@@ -409,8 +409,7 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
   }
 }
 
-// flow upward lifts a column from a wall that separates when it exceeds the submerged weight: the
-// critical gradient is (G_s - 1)(1 - n) = 0.99
+// flow upward lifts a column from a wall that separates: critical gradient (G_s - 1)(1 - n) = 0.99
 SERIAL_TEST(Walls, HeaveAtTheCriticalGradient)
 {
   for (const double offset : {0.0, 0.3})

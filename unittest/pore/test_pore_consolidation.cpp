@@ -21,8 +21,7 @@ double young(double nu)
   return (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu);
 }
 
-/** A soil that consolidates as slowly as waves cross it in a part 1/slow of the time, with a water
- *  that is so many times as stiff; its motion is damped. */
+/** Soil, damped, that consolidates as slowly as waves cross 1/slow of it; stiffness of water. */
 struct Clay {
   double nu, stiff, slow;
 

@@ -107,8 +107,7 @@ SERIAL_TEST(Contact, SlopeHolds)
               0.0, 0.005);
 }
 
-// where water presses with more than the weight of the layer, grains leave what is below, and do
-// not hold the water back: all of its pressure acts on both
+// where water presses with more than the weight of the layer, grains leave and do not hold it back
 SERIAL_TEST(Contact, WaterPartsBodies)
 {
   for (const double offset : {0.0, 0.3})
@@ -145,8 +144,7 @@ SERIAL_TEST(Contact, OfTwoSoils)
   EXPECT_LT(force, 1.0 + 0.125 * (2.2 - mean) / mean);
 }
 
-// water at nodes that are not in contact, though bodies nearly fill them: the left half of the
-// lower one is a fourteenth of a cell off
+// water at nodes that are not in contact: the left half of the lower body is off by h/14
 SERIAL_TEST(Contact, MissedWaterIsTold)
 {
   for (const bool off : {false, true})

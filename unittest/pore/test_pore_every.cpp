@@ -233,8 +233,7 @@ TEST(Restart, Continues)
     expect_continues(blocks(std::string("free pressure 0 initial v_p every ") + every), OF_BLOCKS);
 }
 
-// After a file from between two flows water may flow in each step, or implicitly: points have the
-// pressure that the motion has made since the last flow
+// After a file from between two flows water may flow in each step, or implicitly
 TEST(Restart, GoesOnWithOtherConditions)
 {
   const auto fixes = [](const std::string &more) {

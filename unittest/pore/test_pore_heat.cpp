@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 300
 
-// Soil with pore water that is heated: grains and water expand (fix mpm/pore ... expansion). And
-// material without water, through which none may leak.
+// Soil with pore water that is heated and expands; material without water, into which none leaks.
 
 #include "pore/pore_testing.h"
 

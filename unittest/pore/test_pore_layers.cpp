@@ -156,8 +156,7 @@ SERIAL_TEST(Layers, InParallel)
   }
 }
 
-// a plate whose ends are off the faces, before or beyond: water comes in and goes out at its ends,
-// so that the flow is that through its length
+// a plate whose ends are off the faces: water goes in and out at its ends, through its length
 SERIAL_TEST(Plate, EndsOffTheFaces)
 {
   const int n = 12;

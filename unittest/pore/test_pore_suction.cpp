@@ -5,8 +5,7 @@
 // mpi: 1 4
 // timeout: 400
 
-// Fix mpm/pore in partly saturated soils: keyword retention, and water through surfaces with air
-// outside. Numbers by finite volumes are those of richards.py.
+// Fix mpm/pore in partly saturated soils (retention). Finite volumes are those of richards.py.
 
 #include "pore/pore_bodies_testing.h"
 
@@ -418,8 +417,7 @@ SERIAL_TEST(Surface, FillsDrySoil)
   }
 }
 
-// pressures of points that jump where the last pores fill are told, and water so stiff that its
-// flow needs more stages than there may be is refused
+// pressures that jump where the last pores fill are told, and too stiff water is refused
 SERIAL_TEST(Surface, StiffWater)
 {
   const char *const told = "use a smaller bulk modulus of the water, K, of some 8.8e+05";

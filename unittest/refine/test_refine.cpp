@@ -319,8 +319,7 @@ Tube tube(double h, double meet, const std::string &options)
   return {sqrt(square / all), bore, sqrt(stress / exact_stress)};
 }
 
-// A crack at the rim of a lattice spends another energy than elsewhere, which is told at the end of
-// the run; one that is elsewhere is not
+// A crack at the rim of a lattice spends another energy, which is told at the end of the run
 TEST(Rim, CracksAreTold)
 {
   const struct {

@@ -374,8 +374,7 @@ SERIAL_TEST(BadInput, IsRefused)
   expect_error(plane("lj", "f f", "-4 20 -4 12", (int) empty.size(), 0.3) + fields(2, empty, "") +
                    "fix m all mpm/material density 1 neohookean 100 0.3\nrun 0\n",
                "no material points");
-  // a body that is on the fine lattice alone does not feel the coarse part; one on the coarse
-  // lattice alone feels all
+  // a body on the fine lattice alone does not feel the coarse part; one on the coarse feels all
   const auto words = [&](const std::vector<Part> &some) {
     const std::string fixes = some[2].level == 1 ? c1 : c0;
     return lines_that_say(

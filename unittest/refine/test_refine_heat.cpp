@@ -97,8 +97,7 @@ SERIAL_TEST(Bar, CosineDecays)
     }
 }
 
-// A body that turns and flies through periodic faces with a hot spot at its rim: heat to round-off,
-// without new extremes beyond those of points on one lattice
+// A body flies through faces with a hot spot at its rim: heat to round-off, no new extremes
 SERIAL_TEST(Heat, IsKeptInABodyThatSpins)
 {
   for (const std::string transfer : {"relax 1.0", "affine", "pic"}) {
@@ -167,8 +166,7 @@ SERIAL_TEST(Heat, SpreadsAcrossTheRim)
   EXPECT_LT(around, 1.5 * fine);
 }
 
-// Heat comes in through a face that has coarse and fine cells, is the area times the flux; what
-// follows the temperature outside does so everywhere
+// Heat through a face with coarse and fine cells: area times flux, or after the temperature outside
 SERIAL_TEST(Faces, HaveAllOfTheirArea)
 {
   for (const int dim : {2, 3})
@@ -188,8 +186,7 @@ SERIAL_TEST(Faces, HaveAllOfTheirArea)
       }
 }
 
-// A slab that convection warms on one side is held cold on the other: the profile and the flow at
-// the end are those of the two in series
+// A slab between convection and cold: the profile and the flow are those of the two in series
 SERIAL_TEST(Faces, ConvectionInSeries)
 {
   for (const std::string shape : {"linear", "quadratic"}) {

@@ -239,8 +239,7 @@ static const Change companions[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Companions, BadInput, ValuesIn(companions), case_name);
 
-// What runs but does nothing, or harm: one warning in each run, which names the remedy; and next to
-// each mistake an input like it that is fine.
+// What runs but does nothing, or harm: one warning in each run; and inputs like it that are fine.
 static const char *const SKIN = "neighbor 0.5 bin\n";
 static const Change doubts[] = {
     {"None", RUN, RUN, ""},
@@ -391,8 +390,7 @@ TEST_F(Policy, WarnGoesOnAndCounts)
   EXPECT_GT(kept, 0);
 }
 
-// a point that is inverted does not keep others from their plastic strain: two cells of one block
-// of nodes and one batch, which have no node in common
+// an inverted point does not keep others of its block and batch from their plastic strain
 TEST(PolicyWarn, OtherPointsGoOn)
 {
   const auto strain = [](const std::string &fast) {

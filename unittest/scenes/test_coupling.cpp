@@ -93,8 +93,7 @@ TEST(Coupling, OrderOfFixesDoesNotMatter)
   }
 }
 
-// grains that bounce on each other out of reach: bodies move as if there were none, to the last
-// bit, and so do the grains without the bodies
+// grains that bounce out of reach: bodies and grains move as without the others, to the last bit
 SERIAL_TEST(Coupling, OutOfReachIsNoCoupling)
 {
   const std::string away = "displace_atoms grain move 0 0 5\nvelocity grain set 0 0 0\n"

@@ -180,8 +180,7 @@ TEST(DamageRestart, ContinuesBitwise)
   }
 }
 
-/** Energy per area of a crack over GC, in a bar that is pulled until it breaks at one row of cells
- *  that is a little weaker than the rest. */
+/** Energy per area of a crack over GC, in a bar that is pulled until a row of weak cells breaks. */
 double crack_energy(const std::string &options, double h, const std::string &rest)
 {
   const double GC = 0.004;

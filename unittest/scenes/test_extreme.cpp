@@ -4,8 +4,7 @@
 // labels: physics extreme
 // timeout: 300
 
-// Stability at the extremes: a fast subset of bench/extremes, on one rank. Each number is also in
-// the tables of Howto_mpm_stability.rst.
+// Stability at the extremes, a part of bench/extremes; numbers as in Howto_mpm_stability.rst.
 
 #include "mpm_lammps.h"
 
@@ -235,8 +234,7 @@ TEST(LightNodesInput, IsRefusedWhereItIsOfNoUse)
   expect_error(scene + "fix grid all mpm 1.0 shape linear light 1.5\n", "within 0 and 1");
 }
 
-// points exactly on nodes, at the edge of a body: the next node has no mass, but with linear
-// functions a force, whose momentum was lost
+// points on nodes at the edge of a body: the next node has a force but no mass (linear)
 PARAMETER_TEST(OnNodes, KeepMomentum, const char *,
                Values("shape linear transfer flip 1.0 scheme musl",
                       "shape linear transfer pic scheme usf",
@@ -341,8 +339,7 @@ TEST(TotalLightNodes, LimitIsThatOfTheWarning)
                               "shape bernstein frame total transfer flip 1.0"})
     for (double shift : {1.0e-3, 0.01}) {
       SCOPED_TRACE(options);
-      // the stiffest node has one layer of points: k/m = N'^2/N of them, N = shift or, Bernstein, 2
-      // s (1 - s) with s = shift/2
+      // the stiffest node has one layer of points: k/m = N'^2/N, N = shift or 2 s (1 - s)
       const double s = 0.5 * shift,
                    bernstein = (1.0 - 2.0 * s) * (1.0 - 2.0 * s) / (2.0 * s * (1.0 - s));
       const double limit = 1.0 / sqrt(strstr(options, "bernstein") ? bernstein : 1.0 / shift);

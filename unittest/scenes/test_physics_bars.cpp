@@ -4,8 +4,7 @@
 // labels: physics
 // timeout: 900
 
-// Bars: problems in one dimension with solutions in closed form. They are run in 2d (plane strain)
-// with Poisson's ratio 0, one cell across, periodic.
+// Bars in closed form: in 2d (plane strain) with Poisson's ratio 0, one cell across, periodic.
 
 #include "mpm_lammps.h"
 

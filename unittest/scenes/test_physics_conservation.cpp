@@ -253,8 +253,7 @@ TEST(AffineFit, ThinBodies)
       EXPECT_NEAR(run.affine()[i][c], run.lmp->atom->type[i] == 1 ? A[c] : 0.0, 1.0e-12);
 }
 
-// with stress: the interior of a uniformly stretching block is free of force, up to what the
-// strain itself does to the regular spacing of the points
+// the inside of a uniformly stretching block is free of force, but for spacings that change
 PARAMETER_TEST(StressedPatch, InteriorStaysUniform, const char *,
                Values("shape linear transfer apic", "shape linear transfer flip 1.0 scheme musl",
                       "shape quadratic", "shape cubic",
@@ -756,8 +755,7 @@ PARAMETER_TEST(FreeBody, Invariants, const char *,
   }
 }
 
-// compute mpm/atom angmom: in a rigid rotation the affine field of a point has m omega (D_xx +
-// D_yy), where D is the mean of r r over its shape functions
+// compute mpm/atom angmom: an affine field that spins has m omega (D_xx + D_yy), D the mean of r r
 struct AffineSpin {
   const char *options;
   std::function<double(double)> D;    // along an axis, of the place in the cell, h = 1

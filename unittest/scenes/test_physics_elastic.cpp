@@ -14,8 +14,7 @@ static constexpr double E = 1.0e6, NU = 0.3, RHO = 1050.0;
 static constexpr double LAMBDA = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU)),
                         MU = 0.5 * E / (1.0 + NU);
 
-// D1, static: a bar of length 1 hangs under its weight in uniaxial strain. P(F) = rho g (L - X),
-// P = mu (F - 1/F) + lambda ln F / F.
+// D1, static: a hanging bar in uniaxial strain: P(F) = rho g (L - X) = mu (F - 1/F) + lambda ln F/F
 /** Displacements of a hanging bar at depth X below its support. */
 class HangingBar {
   static constexpr int N = 2000;

@@ -171,8 +171,7 @@ TEST(GasAtRest, NoiseDoesNotGrowOffTheEdgesOfFunctions)
   EXPECT_GT(growth("3 1", ""), 1.0e6);    // as the manual warns
 }
 
-// W.F. Noh, J. Comput. Phys. 72 (1987) 78: cold gas runs into a wall. gamma = 5/3: density 4,
-// pressure 4/3 behind a shock of speed 1/3
+// W.F. Noh, J. Comput. Phys. 72 (1987) 78: gamma = 5/3: density 4, pressure 4/3, shock of speed 1/3
 TEST(Noh, Planar)
 {
   LONG_CASE();
@@ -373,8 +372,7 @@ TEST(Hydrostatic, Column)
   EXPECT_LT(measured("H4 kinetic energy", run.sums().kinetic / (g * H * H * h)), 1e-6);
 }
 
-// H2: Couette and Poiseuille flow from rest, y/L and t nu/L^2, series of G.K. Batchelor,
-// An Introduction to Fluid Dynamics, 1967, sec. 4.3
+// H2: Couette and Poiseuille flow from rest (G.K. Batchelor, Fluid Dynamics, 1967, sec. 4.3)
 double couette(double y, double t)
 {
   double u = y;

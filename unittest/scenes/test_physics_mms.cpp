@@ -233,8 +233,7 @@ TEST(FixedGimp, WallsAgainstSymmetry)
   }
 }
 
-// every shape, transfer, and frame: order between 16 and 32 cells. A new variant is one line.
-// The tables of the manual are those of bench/convergence.py.
+// every shape, transfer, and frame: order from 16 to 32 cells; tables are by bench/convergence.py
 struct ShapeOrder {
   const char *options;
   double crossing;    // order when points cross cells, in the updated frame, within 0.2

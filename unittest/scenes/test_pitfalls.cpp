@@ -307,8 +307,7 @@ SERIAL_TEST(Pitfall, EmptyCellsCostNoMemory)
   EXPECT_LT(blocks[1], 28);
 }
 
-// ghost exchange in six phases: here two ranks that share nodes send them to each other once for
-// each sum over ranks, and a step of USL has one sum
+// ghost exchange: ranks that share nodes send them once for each sum; a step of USL has one
 TEST(Pitfall, SharedNodesTravelOncePerSum)
 {
   const struct {
@@ -405,8 +404,7 @@ PARAMETER_TEST(MuslApic, ShearedBlockGainsNoEnergy, std::string,
   EXPECT_LT(most, 1.002 * start);
 }
 
-// points that cross their block without leaving its tile, while neighbor lists are not made, came
-// to reach into a block that did not exist
+// points that crossed their block within its tile, between lists, reached into no block
 TEST(Pitfall, LongDriftWithinATile)
 {
   for (const int dim : {2, 3}) {

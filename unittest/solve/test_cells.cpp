@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// Poisson's equation on cells, and its multigrid preconditioner: against the equations as they are
-// written, exact pressures, and iterations of other solvers.
+// Poisson's equation on cells and its multigrid: equations as written, exact pressures, iterations.
 
 #include "cell_scenes.h"
 
@@ -339,8 +338,7 @@ TEST(CellMultigrid, ReleasedColumn)
   EXPECT_GT(std::log2(error[0] / error[1]), 0.9);
 }
 
-// What is known outside counts infinitely: there are no factors of that, and it is said. The
-// correction by the next level is left out then.
+// What is known outside counts infinitely, without factors: the next level is left out then.
 TEST(CellMultigrid, IsUsableOrSaysSo)
 {
   CellSystem system(CellScene{2, 32});

@@ -15,8 +15,7 @@
 
 using namespace MPM_NS;
 
-// A load on each node of a rod: x_i = i (n + 1 - i)/2, exactly; in exact arithmetic after n/2
-// iterations as load and rod are symmetric.
+// A load on each node of a rod: x_i = i (n + 1 - i)/2 in n/2 iterations, by symmetry.
 TEST(ConjugateGradients, RodUnderItsWeight)
 {
   const int n = 50;

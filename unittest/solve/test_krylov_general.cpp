@@ -22,8 +22,7 @@ System::Operator diagonal(const std::vector<double> &d)
   };
 }
 
-/** A rod of n springs between fixed ends, and its loads; the last m unknowns are the forces that
- *  hold m of its nodes, every third one: [K B^T; B 0]. */
+/** A rod of n springs, its loads, and m forces that hold every third node: [K B^T; B 0]. */
 class HeldRod {
  public:
   static constexpr int n = 30, m = 10;
@@ -111,8 +110,7 @@ TEST(FlexibleGMRES, DegreeOfMinimalPolynomial)
   const int n = 30;
   std::vector<double> d(n), b(n, 1.0), x(n, 0.0);
   for (int i = 0; i < n; i++) d[i] = 1.0 + i % 4;
-  // eigenvalues 1 to 4, not symmetric and not normal: the first of each pair is fed by the second,
-  // which has another one
+  // eigenvalues 1 to 4, not normal: the first of each pair is fed by the second, of another one
   System system(n, [&](const double *x, double *y) {
     for (int i = 0; i < n; i++) y[i] = d[i] * x[i] + (i % 2 == 0 ? 5.0 * x[i + 1] : 0.0);
   });

@@ -4,8 +4,7 @@
 // labels: unit ranks
 // mpi: 1 2 3 4
 
-// The stiffness of points that are distributed over ranks in patches, with its multigrid: the same
-// iterations and displacements as on one rank.
+// The stiffness of points on ranks in patches, with its multigrid: as on one rank.
 
 #include "field/mpm_halo.h"
 #include "field/mpm_lattice_ranks.h"

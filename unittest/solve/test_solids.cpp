@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// Multigrid for the stiffness of points with B-splines: symmetry, exact solutions, and iterations,
-// which must not depend on the number of points.
+// Multigrid for the stiffness of B-splines: symmetry, exact solutions, iterations for any size.
 
 #include "solid_scenes.h"
 #include "thread_ranks.h"
@@ -124,8 +123,7 @@ TEST(SplineMultigrid, IsSymmetric)
   }
 }
 
-// A bar that is pulled by its own weight along itself, without lateral strain: u' = g (1 - x)/M,
-// exactly at the second order of the functions.
+// A bar pulled by its own weight, without lateral strain: u' = g (1 - x)/M, exact.
 TEST(SplineMultigrid, BarUnderItsWeight)
 {
   auto scene = block(2, 24);
@@ -294,8 +292,7 @@ TEST(SplineMultigrid, FactorsOfAll)
   EXPECT_GT(system.multigrid->levels(), 1);
 }
 
-// Factors in an envelope against those of a dense matrix: numbers of unknowns that fill blocks or
-// not, parts that are not joined, and all instruction sets.
+// Factors in an envelope against a dense matrix: any block, parts, and instruction sets.
 TEST(EnvelopeFactors, SolveLikeDenseOnes)
 {
   for (const char *isa : {"baseline", "avx2", "avx512"})

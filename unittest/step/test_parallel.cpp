@@ -119,8 +119,7 @@ TEST(RanksWithoutPoints, Slabs)
   EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
 }
 
-// walls of all kinds, plasticity, variable time step and energies: what they add up must not
-// depend on which rank has which node
+// walls of all kinds, plasticity, variable steps, energies: sums must not depend on ranks
 static const std::string walls = space("lj", "f f f", "0 12 0 8 0 8") +
     body("block 1 11 1 7 0 4",
          "density 1.0 eos linear 20.0 strength j2 10.0 0.3 hardening linear 1.0 viscosity "

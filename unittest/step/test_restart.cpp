@@ -5,8 +5,7 @@
 // mpi: 1 2 3
 // timeout: 900
 
-// A run continued from a restart file is the uninterrupted run, bit by bit on the same number of
-// ranks, and to round-off on another.
+// A run from a restart file is that run, bit by bit on as many ranks, to round-off on others.
 
 #include "mpm_lammps.h"
 
@@ -231,8 +230,7 @@ TEST(RestartState, WhatWasDeletedIsInTheFile)
   EXPECT_NEAR(check(again), moving, 1.0e-10 * mass);
 }
 
-// velocities that are changed between runs change the affine matrices, also after a restart file,
-// and on any number of ranks; otherwise both continue
+// velocities changed between runs change affine matrices, also after a restart file, on any ranks
 TEST(RestartState, NewVelocitiesAreSeen)
 {
   const ScratchFile file("fit");

@@ -4,8 +4,7 @@
 #ifndef MPM_KERNEL_TESTING_H
 #define MPM_KERNEL_TESTING_H
 
-// Random numbers, comparisons, and all combinations for tests of the kernels. This header includes
-// the standard headers that these tests need.
+// Random numbers, comparisons, and combinations for tests of kernels; standard headers they need.
 
 #include "transfer/kernels.h"
 
@@ -23,8 +22,7 @@ namespace MPM_TEST {
 
 using Reals = std::vector<double>;
 
-/** Whether this is a build with sanitizers (test_sanitize.sh). Tests then need to reach each place
- *  in the code only, and repeat less often. */
+/** Is this a build with sanitizers (test_sanitize.sh)? Then tests repeat less often. */
 #if defined(MPM_SANITIZED)
 constexpr bool SANITIZED = true;
 #else

@@ -645,8 +645,7 @@ class Tables : public ::testing::TestWithParam<const char *> {
   }
 };
 
-/** Rows to a batch: F <- (I + dt L) F, and Kirchhoff to Cauchy stress with the old volume. Back
- *  with the new volume, but not for points that are inverted. */
+/** Rows to a batch: F <- (I + dt L) F, Cauchy stress with the old volume; back with the new one. */
 TEST_P(Tables, BatchesAgreeWithMatrixAlgebra)
 {
   for (int dim : {2, 3})

@@ -33,8 +33,7 @@ template <class Spline, class Check> static void at_positions(Check check)
   }
 }
 
-/** Value of the B-spline of the order at distance x from its node, from its textbook definition as
- *  the centred average of the spline one order lower. */
+/** B-spline at distance x from its node, the centred average of the spline one order lower. */
 static double bspline(int order, double x)
 {
   if (order == 0) return x >= -0.5 && x < 0.5 ? 1.0 : 0.0;

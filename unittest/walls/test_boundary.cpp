@@ -722,8 +722,7 @@ TEST(Motion, Displacement)
   }
 }
 
-// a bar is twisted by the motion of its end, given in three ways: the same torque, that of the
-// theory, and its work is what the bar stores
+// a bar is twisted by its end in three ways: torque of theory, its work is what the bar stores
 TEST(Torsion, ReactionAndWork)
 {
   LONG_CASE();
@@ -1006,8 +1005,7 @@ TEST(Motion, BallThatMovesAndGrows)
   }
 }
 
-// Velocity of the nodes in regions, against the known normal. Material is in them as in a grip:
-// there nodes act, and lines where it is in front
+// Velocity of nodes in regions, against the known normal; material is in them as in a grip
 TEST(Regions, SlipNormals)
 {
   // direction from a center, or from an axis where it is not a number, and distance
@@ -1320,8 +1318,7 @@ TEST(Regions, SlipHoldsWhereItMoves)
     }
 }
 
-// A roller that goes along the surface of a block and into it: ranks need nodes next to it wherever
-// it is, also while no point leaves its neighborhood
+// A roller along and into a block: ranks need nodes next to it wherever it is
 TEST(Regions, RollerOnRanks)
 {
   const std::string text = plane("lj", "f f", "-14 14 -6 6", 1, 2.0) +
@@ -1615,8 +1612,7 @@ TEST(TimeStep, RestartTakesTheSameSteps)
   }
 }
 
-// also when nothing limits the time step but its largest value, and with points that take every
-// second or third step
+// also when its largest value alone limits the step, and when points take every 2nd or 3rd one
 TEST(TimeStep, RunsEndAtATime)
 {
   for (const double end : {0.9, 1.0, 1.0123, 0.049, 0.1})
@@ -1645,8 +1641,7 @@ TEST(TimeStep, RunsEndAtATime)
   }
 }
 
-// also when the part before the last ends among the steps that are made to fit; not when one step
-// is left, which is divided for the sake of its output
+// also when a part ends among the steps made to fit; not with one step left, divided for its output
 TEST(TimeStep, PartsOfARunToATimeAreOneRun)
 {
   for (const char *more : {"", " strain 0.002", " every 7 grow 1.001"}) {
@@ -1786,8 +1781,7 @@ TEST(BadInput, NarrowChannels)
   EXPECT_EQ(error_of(scene + "fix w all mpm/boundary xlo xhi slip\nrun 1\n"), "");
 }
 
-// A region that another command has put elsewhere between runs has not moved there: the wall has
-// the velocity of the motion in the step
+// A region put elsewhere between runs has not moved there: the wall has its velocity in the step
 TEST(Regions, ThatAreElsewhereInTheNextRunHaveNotMovedThere)
 {
   Scene run(space("lj", "p p f", "0 4 0 4 0 8") +

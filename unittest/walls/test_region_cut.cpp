@@ -172,8 +172,7 @@ TEST(RegionCut, OfALargeBodyOnlyThePartInTheBox)
   const ScratchFile file("large.stl", text_of({{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}));
   const std::string corner = "1000 0.3 0.2 0.1",
                     oblique = "1000 -333.1666666666667 -333.1666666666667 -333.1666666666667";
-  // below the face is the share of a sum of three numbers, spread evenly from 0 to 1, that is less
-  // than t (J.O. Irwin, P. Hall, 1927)
+  // below the face: sums of three even numbers from 0 to 1 below t (J.O. Irwin, P. Hall, 1927)
   const double t = 12.5 / 8.0;
   const struct {
     const std::string &where;

@@ -322,8 +322,7 @@ SERIAL_TEST(RollingSphere, OnATurnedPlane)
   expect_rigid({60, 0.6}, roll({60, 0.6}, 0.05, wall, 3, 30.0), 0.02, 0.05, 0.25 * 0.05);
 }
 
-/** The way along the wall in this time from rest, of a body that has settled, damped, without
- *  friction. begin: field, body, and material. */
+/** The way along the wall in this time, after settling. begin: field, body, and material. */
 double way_from_rest(const std::string &begin, int dim, const Incline &incline, double h,
                      const Wall &wall, const std::string &kind, double time)
 {
