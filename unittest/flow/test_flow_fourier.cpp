@@ -15,8 +15,7 @@ using namespace MPM_TEST;
 /** Entries of the vector of the fix. */
 enum { ITERATIONS, RESIDUAL, DIVERGENCE, FILLED, WET };
 
-/** Points on n cells per length in a box of the given lengths, where the variable wet is not 0,
- *  with a flow that is not smooth and has a divergence. */
+/** Points, n cells per length, in a box, where wet is not 0, with a rough flow and a divergence. */
 std::string water(int dim, const std::string &faces, int n, const std::string &lengths,
                   const std::string &wet)
 {
@@ -86,8 +85,7 @@ TEST(Fourier, FewIterationsInFlatLayers)
   EXPECT_LE(iterations(water(3, "f p f", 12, "0 1 0 1 0 1", "(x>0.46)") + flow(12, SOLVER), 1), 8);
 }
 
-// O7: with cosines for all of the tank, and surfaces a cell away, there are 14, 18, and 22; 15, 19,
-// and 25; 28, 39, and 53. 1.5 times as many are asked for
+// O7: cosines for the whole tank have 14, 18, 22; 15, 19, 25; 28, 39, 53; asked: 1.5 times as many
 TEST(Fourier, IterationsInOtherShapes)
 {
   const std::string shapes[] = {"(y<0.4+0.2*x)", "((x-0.5)^2+(y-0.5)^2<0.09)", splashes()};

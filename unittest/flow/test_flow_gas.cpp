@@ -57,8 +57,7 @@ std::string shell(int dim, int n)
   return text + strprintf("fix w all mpm/incompressible %.17g 1 gas 1 1.4 open xlo open yhi\n", h);
 }
 
-/** A tube like the letter U, 1.2 high, of which the right arm is closed. Water stands at these
- *  heights; n cells in the width of an arm. */
+/** A letter U, 1.2 high, its right arm closed; heights of water; n cells in the width of an arm. */
 std::string tube(int n, double left, double right)
 {
   const double h = 0.4 / n;

@@ -198,8 +198,7 @@ SERIAL_TEST(Vortices, DecayAsTheyShould)
   }
 }
 
-// by default vortices lose nothing by the number of steps, at rest and in a stream; with apic 16
-// cells lose 12 and 39 % and 32 cells 2 and 5 % in these
+// by default vortices lose nothing by the number of steps; apic: 12 and 39 % (16), 2 and 5 % (32)
 SERIAL_TEST(Vortices, AnyNumberOfSteps)
 {
   for (const int n : first_of(1, {16, 32}))

@@ -2,8 +2,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU
 // General Public License, version 2; see the file LICENSE.
 
-// Laws of soil, rock and snow at a single point: strength in the tests of a soil laboratory, flow,
-// critical states, and what holds for all of them.
+// Laws of soil, rock and snow at a point: laboratory tests, flow, critical states, common traits.
 
 #include "law/spectral.h"
 #include "material/material_testing.h"
@@ -569,8 +568,7 @@ TEST(CamClay, UndrainedStrength)
   }
 }
 
-/** Pressure, equivalent stress and preconsolidation pressure of the rate equations on a straight
- *  strain path from the yield surface. */
+/** Pressure, equivalent stress, preconsolidation on a straight path from the yield surface. */
 State clay_ode(const State &start, double volume, double strain, int n)
 {
   const auto rate = [&](double, const State &s) {

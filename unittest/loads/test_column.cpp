@@ -17,8 +17,7 @@ using namespace MPM_TEST;
 const std::string GROUND = "variable E equal 2000*200^2*2.5\n";
 const std::string SIDE = " 346.41 200 ";
 
-/** Level ground 20 m high from -10 to 10 m, a column of the given width (m) at 14 m, and waves of
- *  shear or pressure at their base. */
+/** Level ground, 20 m high, from -10 to 10 m, a column of this width at 14 m; waves at the base. */
 std::string site(const std::string &options, bool shear, double width = 2.0)
 {
   return plane("si", "f f", "-20 20 0 24", 2, 0.3) + "group soil empty\ngroup column empty\n" +
@@ -59,8 +58,7 @@ double velocity(Scene &run, int axis, double low, double high, double above)
   return sum / n;
 }
 
-/** Largest difference between ground and column during a run, at the surface: next to the sides and
- *  in the middle, over the largest velocity of the column. */
+/** Largest difference of ground and column at the surface: sides and middle, relative. */
 double difference(Scene &run, int axis, int steps, double top = 19.0)
 {
   double most = 0.0, off = 0.0;

@@ -164,8 +164,7 @@ PARAMETER_TEST(Oblique, Reflects, Incoming,
   const double kx = k * d[0], in = amplitude(kx, a[0], a[1]);
   const int steps[2] = {(int) (w.travel[0] / (c * d[0]) / 0.3),
                         (int) (w.travel[1] / (c * d[0]) / 0.3)};
-  // an echo of the other kind has as many waves in another length, as it goes along x at another
-  // speed. Shear waves of a lattice are up to 6 % shorter
+  // an echo of the other kind has another length and speed; shear waves of a lattice: 6 % shorter
   double s = 0.0;
   run.commands(strprintf("run %d\n", steps[0]));
   for (double K = 0.99 * ks; K < 1.06 * ks; K += 0.005 * ks)
@@ -176,8 +175,7 @@ PARAMETER_TEST(Oblique, Reflects, Incoming,
   const double p =
       amplitude(-kp, -kp / omega, ky / omega) / in * (w.shear ? kx / kp * CS * CS : 1.0);
   EXPECT_NEAR(measured("pressure wave", p), w.p, 0.02);
-  // of pressure waves at 80 degrees, shear waves are 9 cells long, and their packet has spread
-  // before pressure waves have turned round
+  // of pressure waves at 80 degrees, the packet of shear waves spreads before these turn round
   if (w.s > 0.0) EXPECT_NEAR(measured("shear wave", s), w.s, 0.02);
 }
 

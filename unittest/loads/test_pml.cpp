@@ -120,8 +120,7 @@ Echo echo(const std::string &name, const Incoming &w, const std::array<Velocitie
                         w.shear ? d[0] : d[1]));
   };
   Echo e = {0.0, 0.0, 0.0};
-  // an echo of the other kind has as many waves in another length, as it goes along x at another
-  // speed. Shear waves of a lattice are up to 6 % shorter
+  // an echo of the other kind has another length and speed; shear waves of a lattice: 6 % shorter
   for (double K = 0.99 * ks; K < 1.06 * ks; K += 0.005 * ks)
     e.s = std::max(e.s,
                    amplitude(0, -K, ky * CS / omega, ks * CS / omega) *

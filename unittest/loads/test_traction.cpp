@@ -493,8 +493,7 @@ SERIAL_TEST(Tube, AroundAnAxis)
   }
 }
 
-// a hollow sphere under pressure around an axis of symmetry: displacements next to the bore by
-// Lame's solution, to 1 % in the mean
+// a hollow sphere under pressure around an axis: displacements at the bore (Lame) to 1 %
 SERIAL_TEST(Sphere, Widens)
 {
   const auto scene = plane("si", "f f", "0 2.2 0 2.2", 1, 0.03) +
@@ -730,8 +729,7 @@ SERIAL_TEST(Traction, TellsOfNodesOfElements)
   EXPECT_THAT(run.error(start + nodes + end), HasSubstr("all points of group all are nodes"));
 }
 
-// a round bar that is drawn by a pressure: its rim curls in the updated frame and holds the load
-// there, at rest with a third of the strain of theory
+// a round bar drawn by a pressure: its updated rim curls and holds the load at 1/3 of the strain
 SERIAL_TEST(Pressure, OfARimThatCurls)
 {
   const auto scene = [](const char *frame) {

@@ -777,8 +777,7 @@ TEST(WaveSpeed, FiniteAtExtremes)
         EXPECT_TRUE(std::isfinite(p.vonmises()));
         EXPECT_TRUE(std::isfinite(p.pressure()));
         EXPECT_TRUE(std::isfinite(p.stored_energy()));
-        // heat of plastic work is no wave: where stress times J is large, a shock eos turns it into
-        // more pressure than the wave brings
+        // heat of plastic work is no wave, though a shock eos turns it into more pressure
         if (J > 10.0 && text.find("eos shock") != std::string::npos) continue;
         const double slope = std::max(speed2(p, {1, 0, 0}), speed2(p, {0, 1, 0}));
         EXPECT_GE(p.wave_speed(), std::sqrt(std::max(slope, 0.0)) * (1 - 1e-5));

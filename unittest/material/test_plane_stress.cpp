@@ -36,8 +36,7 @@ struct Surface {
     point.old = old;
   }
 
-  /** Stress (a matrix) after a motion with the deformation gradient F of the whole space, of which
-   *  only what is along the body counts. */
+  /** Stress after a motion with the F of the whole space; what is along the body counts. */
   Matrix go(const Matrix &F)
   {
     std::fill_n(point.along, 9, 0.0);

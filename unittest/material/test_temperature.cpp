@@ -823,8 +823,7 @@ TEST(Sources, WorkOfDamageRaisesThePressure)
       }
 }
 
-// the same in any motion, with plastic work, to second order in the step as without heat; without
-// plastic work in tension, which has an error of its own
+// the same in any motion, of second order; no plastic work in tension, which has its own error
 TEST(Sources, WorkOfDamageWithPlasticWork)
 {
   const std::string start = "density 7850 eos shock 4600 1.4 2 strength j2 77e9 490e6 damage ";

@@ -119,8 +119,7 @@ TEST(MeshFile, TypesAndGroups)
   expect_error(space_2 + make(two.name, "elements", "types physical"), "in the sets");
 }
 
-// parts of Abaqus are where instances put them, moved and turned; sets of parts have elements of
-// all of them, those of the assembly of one
+// parts of Abaqus are where instances put them; sets of parts: of all, of the assembly: of one
 TEST(MeshFile, PartsOfAbaqus)
 {
   const std::string cube = "*PART, NAME=Cube\n*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,2\n"

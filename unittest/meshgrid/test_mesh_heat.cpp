@@ -13,8 +13,7 @@ using namespace MPM_TEST;
 
 using Map = std::function<std::array<double, 3>(double, double, double)>;
 
-/** A block of 1 x 1 x 1 (2d: 1 x 1), whose inner nodes are moved by a part of a cell, of rectangles
- *  along the axes. */
+/** A block of 1 x 1 x 1 (2d: 1 x 1) of rectangles, inner nodes are moved by a part of a cell. */
 std::string block(Kind kind, int n)
 {
   if (kind == QUADS || kind == HEXAHEDRA)

@@ -118,8 +118,7 @@ class VTKReader {
 
 // ---------------------------------------------------------------- points with a state set by hand
 
-/** Points 1 and 2 of a neo-Hookean material, 3 and 4 of an elastic-plastic one; atom 5 is not a
- *  material point. With two processes each has some of them. */
+/** Points 1 and 2: neo-Hookean, 3 and 4: elastic-plastic, atom 5: no point; also on two ranks. */
 class ByHand : public ::testing::Test {
  protected:
   Scene run;

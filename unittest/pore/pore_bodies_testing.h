@@ -78,8 +78,7 @@ inline void expect_same_on_ranks(const std::string &scene, double difference)
               run.parallel.fix("water")->compute_scalar(), 1e-12);
 }
 
-/** Expects that a scene of colliding() gives the same bits with a restart in the middle as without
- *  it. variables: as for colliding(). */
+/** Expects the same bits of colliding() with a restart in the middle. variables: as there. */
 inline void expect_continues(const std::string &scene, const std::string &variables)
 {
   const std::string tail = scene.substr(scene.find("fix m one"));

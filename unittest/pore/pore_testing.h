@@ -88,8 +88,7 @@ inline double terzaghi(double z, double T)
   return sum;
 }
 
-/** Rms difference of the pressures from Terzaghi's solution at the time factor T. p0: initial
- *  pressure. The top of the column is at 1 along the axis. */
+/** Rms difference of pressures from Terzaghi's at the time factor T. p0: first pressure. Top: 1. */
 inline double difference_from_terzaghi(Scene &run, Water &water, double p0, double T, int axis = 1)
 {
   const double *const p = water.pressures();

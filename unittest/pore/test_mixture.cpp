@@ -788,8 +788,7 @@ TEST(Slump, IsTheSameAcrossPeriodicFaces)
   EXPECT_NEAR(inside.fix("mix")->compute_scalar(), across.fix("mix")->compute_scalar(), 1.0e-9);
 }
 
-// While soil and water are apart, nodes are those of fields without a mixture; a block falls until
-// it is in the water. The ledger has long records all the time
+// While soil and water are apart, nodes are those of two fields; the ledger has long records
 TEST(Apart, CostsNothingAndChangesNothing)
 {
   const std::string fields = "fix s soil mpm 1.0\nfix w water mpm 1.0\n";

@@ -95,8 +95,7 @@ PARAMETER_TEST(
       "fix plate all mpm/boundary yhi slip velocity 0 v_v 0\n" +
       clay.water("xhi pressure 0" + strip.more) + clay.damping(0.25 * h * h));
   Water water(run);
-  // undrained, the pressure is that of water and soil under F (Skempton's coefficient, undrained
-  // Poisson's number)
+  // undrained pressure of water and soil under F (Skempton's coefficient, Poisson's number)
   const double Ku = clay.bulk() + clay.stiff, B = clay.stiff / Ku,
                nu_u = (3.0 * Ku - 2.0 * clay.shear()) / (2.0 * (3.0 * Ku + clay.shear()));
   const double p0 = F * B * (1.0 + nu_u) / 3.0;
@@ -140,8 +139,7 @@ PARAMETER_TEST(Cryer, PressureRisesFirst, const char *, Values("", " every auto"
     EXPECT_NEAR(measured(strprintf("T %g", at.T), pressure(at.T)) / at.value, 1.0, 0.02);
 }
 
-/** A column of large strain: stress of the soil over its modulus, compression positive, and
- *  permeability over that of the start, both at a stretch. */
+/** A column of large strain: stress over modulus, permeability over that at first, at a stretch. */
 struct Large {
   const char *name;
   double q;    // load
@@ -360,8 +358,7 @@ PARAMETER_TEST(
   }
 }
 
-/** Pressure at a depth over that at the base at first, and degree of consolidation, where the
- *  weight of the soil is all on its water first. */
+/** Pressure over that at the base at first, and degree of consolidation by own weight. */
 double of_weight(double z, double T)
 {
   double sum = 0.0;

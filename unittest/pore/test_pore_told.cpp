@@ -10,8 +10,7 @@
 
 using namespace MPM_TEST;
 
-/** A column with the pressure 1 kPa at first, which the load bears, and 300 Pa outside. options: of
- *  fix mpm; more: of fix mpm/pore. */
+/** A column at 1 kPa, which the load bears, and 300 Pa outside. options: of fix mpm; more: pore. */
 std::string jump(const std::string &options, const std::string &more)
 {
   return replaced(column(10,

@@ -289,8 +289,7 @@ PARAMETER_TEST(StressedPatch, InteriorStaysUniform, const char *,
       1.0e-4);
 }
 
-// ten turns of a stressed block, driven by the nodes: each point ends where it began, with the
-// stress it began with (pitfalls 1 and 13), and J is constant
+// ten turns of a stressed block, driven by nodes: points, stress, and J come back (pitfalls 1, 13)
 struct RotationCase {
   int dim;
   const char *options, *law;
@@ -491,8 +490,7 @@ TEST(TwoDisks, Refined)
   }
 }
 
-// C3: two hyperelastic rings collide at 60 m/s: momentum, mirror symmetry, energy; no point loses
-// the others, and the rings bounce off
+// C3: two rings collide at 60 m/s: momentum, symmetry, energy; no point is lost, they bounce off
 TEST(Rings, Collision)
 {
   LONG_CASE();

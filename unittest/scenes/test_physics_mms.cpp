@@ -70,8 +70,7 @@ TEST(Solution, BodyForce)
   }
 }
 
-/** Largest rms displacement error of the points over time. Without walls, the solution, which is
- *  odd about both ends, is continued to a period of 2. */
+/** Largest rms displacement error over time. Without walls the odd solution has a period of 2. */
 static double mms_error(int dim, int ne, double G, const std::string &options, bool walls)
 {
   const Solution s = {G, 1.0e7, dim == 1 ? 0.0 : 0.3, 1000.0, dim};

@@ -12,8 +12,7 @@ using namespace MPM_TEST;
 
 constexpr double DEG = M_PI / 180.0, g = 9.81;
 
-/** A layer on a rough plane with an angle, periodic along it; gravity comes within a time, so that
- *  the layer settles without bouncing. */
+/** A layer on a rough plane with an angle; gravity comes slowly, so that it does not bounce. */
 std::string layer(double depth, double h, int cells, double angle, double ramp,
                   const std::string &material, const std::string &velocity)
 {

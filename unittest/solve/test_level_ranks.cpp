@@ -21,8 +21,7 @@
 
 using namespace MPM_NS;
 
-/** Blocks of one triangle that rank me of n gives, some of them to rows that are not its own, and
- *  some of a place where it has given one. */
+/** Blocks that rank me of n gives, some to rows of others, some of a place that it has given. */
 std::vector<MatrixBlock> blocks_of(int me, int n, int rows, int width)
 {
   std::vector<MatrixBlock> list;

@@ -86,8 +86,7 @@ int g2p(MPM_NS::G2P kernel, Points &points, const double *tile, double *L = null
   return kernel(points.rows(), points.step, points.first, points.last, points.base, tile, L);
 }
 
-/** A tile and its shape. margin: nodes in front of the block; last: largest tile index of a base
- *  node; reach: nodes of the stencil behind a base node. */
+/** A tile and its shape. margin: nodes in front; last: largest base node; reach: nodes behind. */
 struct TileShape {
   int dim, stride_x, stride_y, margin, last, reach;
   double *tile;

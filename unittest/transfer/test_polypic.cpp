@@ -53,8 +53,7 @@ double field(int dim, const double *x, int i, int along)
   return sum;
 }
 
-// a field of products of coordinates goes to nodes and back unchanged if points have its modes, for
-// any instruction set; apic, without such modes, changes it
+// a field of products goes to nodes and back if points have its modes; apic changes it
 
 TEST(Polypic, RoundTrip)
 {

@@ -128,8 +128,7 @@ TYPED_TEST(Spline, SecondMoment)
 TYPED_TEST(Spline, GradientIsTheDerivative)
 {
   at_positions<TypeParam>([](double x, double, double f) {
-    // Central differences with the step d are exact up to d^2/6 times the third derivative (at most
-    // 3, cubic only) and the rounding error 1e-16 / d.
+    // Central differences: d^2/6 times the third derivative (at most 3, cubic), rounding 1e-16/d.
     const double d = 1.0e-5;
     const Nodes<TypeParam> low(f - d), at(f), high(f + d);
     for (int i = 0; i < TypeParam::nodes; i++)

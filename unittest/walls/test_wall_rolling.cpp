@@ -157,8 +157,7 @@ struct Wall {
   double velocity[2] = {0.0, 0.0};
 };
 
-/** The round disk settles, damped, without friction, and is let go on the incline. contact: on a
- *  plate that is a body. */
+/** The disk settles, damped, without friction, and is let go. contact: on a plate, a body. */
 Motion roll_round(const Incline &incline, double h, const Wall &wall, bool contact = false)
 {
   const double theta = incline.theta * M_PI / 180, turn = wall.turned * M_PI / 180;
