@@ -337,6 +337,14 @@ class Scene {
     return lmp->modify->get_compute_by_id(id)->compute_scalar();
   }
 
+  /** A compute of values for atoms, which are current. */
+  Compute *per_atom(const std::string &id)
+  {
+    auto *compute = lmp->modify->get_compute_by_id(id);
+    compute->compute_peratom();
+    return compute;
+  }
+
   /** State of one point: unwrapped position, Cauchy stress, current volume. */
   struct State {
     double tag, type, x[3], v[3], F[9], stress[6], vol, mass;
@@ -393,6 +401,13 @@ class Scene {
   double **v() { return lmp->atom->v; }
   double *mass() { return lmp->atom->rmass; }
   MPMPoints &points() { return *MPMPoints::get(lmp->atom); }
+  /** Cauchy stress of point i of this rank: xx yy zz xy xz yz. */
+  std::array<double, 6> cauchy(int i)
+  {
+    std::array<double, 6> stress;
+    points().cauchy(i, stress.data());
+    return stress;
+  }
   template <class T = Fix> T *fix(const std::string &id)
   {
     return dynamic_cast<T *>(lmp->modify->get_fix_by_id(id));

@@ -275,8 +275,7 @@ SERIAL_TEST(Spray, HasThePressureOfItsPocket)
               "\nfix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5 max 0.005\n"
               "compute p all mpm/atom pressure\nthermo_style custom step\nrun 20\n");
     const double exact = *faces ? 0.0 : gas(run, HIGHEST) - 1e5;
-    auto *pressure = run.lmp->modify->get_compute_by_id("p");
-    pressure->compute_peratom();
+    auto *pressure = run.per_atom("p");
     const double *const p = pressure->vector_atom;
     int spray = 0;
     for (int i = 0; i < run.n(); i++) {

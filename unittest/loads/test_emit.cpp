@@ -529,8 +529,7 @@ compute T all mpm/atom temperature molten
 fix dt all mpm/dt 0.5
 run 500
 )");
-  auto *T = run.lmp->modify->get_compute_by_id("T");
-  T->compute_peratom();
+  auto *T = run.per_atom("T");
   for (int i = 0; i < run.n(); i++) {
     EXPECT_NEAR(T->array_atom[i][0], 400.0, 1e-6);
     EXPECT_EQ(T->array_atom[i][1], 1.0);

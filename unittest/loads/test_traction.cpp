@@ -411,8 +411,7 @@ SERIAL_TEST(Free, PressureInside)
                        "fix load all mpm/traction free pressure v_T\nrun 1000"));
     double most = 0.0;
     for (int i = 0; i < run.n(); i++) {
-      double sigma[6];
-      run.points().cauchy(i, sigma);
+      const auto sigma = run.cauchy(i);
       for (const int c : {0, 1, 3})
         most = std::max(most, std::fabs(sigma[c] + (c < 3 ? 1e5 : 0.0)));
     }
@@ -459,8 +458,7 @@ SERIAL_TEST(Free, WaterAtRest)
   Scene run(replaced(hangs, "variable p", "variable g equal v_T/1000\nvariable p"));
   double most = 0.0;
   for (int i = 0; i < run.n(); i++) {
-    double sigma[6];
-    run.points().cauchy(i, sigma);
+    const auto sigma = run.cauchy(i);
     for (const int c : {0, 1})
       most = std::max(most, std::fabs(sigma[c] + 9810 * (1.0 - run.x()[i][1])));
   }

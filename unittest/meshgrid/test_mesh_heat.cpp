@@ -51,8 +51,7 @@ std::string scene(int dim, const std::string &file, const std::string &heat,
 /** [local atom] */
 const double *temperatures(Scene &run)
 {
-  auto *compute = run.lmp->modify->get_compute_by_id("T");
-  compute->compute_peratom();
+  auto *compute = run.per_atom("T");
   return compute->vector_atom;
 }
 double out(Scene &run, int k)
@@ -260,8 +259,7 @@ SERIAL_TEST(MeshHeat, FrontsDoNotSeeTheSideOfTheJump)
           "fix g all mpm/mesh " + file.name + " frame total\n" +
           strprintf("fix h all mpm/mesh/heat g temperature xlo %g\n", melts ? 293.15 : 253.15) +
           "timestep 3.0\ncompute f all mpm/atom molten volume\nrun 1200\n");
-      auto *const compute = run.lmp->modify->get_compute_by_id("f");
-      compute->compute_peratom();
+      auto *const compute = run.per_atom("f");
       double molten = 0.0;
       for (int i = 0; i < run.n(); i++)
         molten += compute->array_atom[i][0] * compute->array_atom[i][1] / 0.02;

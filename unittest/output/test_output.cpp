@@ -161,8 +161,7 @@ class ByHand : public ::testing::Test {
   /** Column n (0 for a vector) of a compute, by tag - 1, on all processes. */
   std::vector<double> column(const std::string &id, int n = 0)
   {
-    auto *compute = run.lmp->modify->get_compute_by_id(id);
-    compute->compute_peratom();
+    auto *compute = run.per_atom(id);
     auto *atom = run.lmp->atom;
     std::vector<double> mine(atom->natoms, 0.0);
     for (int i = 0; i < atom->nlocal; i++)
@@ -557,8 +556,7 @@ SERIAL_TEST(Output, MaterialsAreThoseOfNow)
 
   // a history variable that is gone
   Scene run(scene + "compute h all mpm/atom eplastic\nunfix m\n" + other + "run 1\n");
-  auto *h = run.lmp->modify->get_compute_by_id("h");
-  h->compute_peratom();
+  auto *h = run.per_atom("h");
   run.commands("unfix m\nfix m all mpm/material density 1.0 neohookean 50.0 0.3\n");
   EXPECT_THROW(h->compute_peratom(), std::exception);
 }

@@ -41,8 +41,7 @@ struct PointWater {
 inline std::vector<PointWater> water_of_points(Scene &run)
 {
   const auto values = [&](const char *id) {
-    auto *compute = run.lmp->modify->get_compute_by_id(id);
-    compute->compute_peratom();
+    auto *compute = run.per_atom(id);
     return compute->vector_atom;
   };
   const double *const p = values("pore"), *const S = values("saturation");

@@ -17,8 +17,7 @@ struct Water {
 
   const double *pressures()
   {
-    auto *compute = run.lmp->modify->get_compute_by_id("pore");
-    compute->compute_peratom();
+    auto *compute = run.per_atom("pore");
     return compute->vector_atom;
   }
   /** Mean pressure of the points of this rank in a range of y. */
@@ -163,8 +162,7 @@ inline void expect_seepage(Scene &run, double i, double k)
   for (int p = 0; p < run.n(); p++) {
     const double y = run.x()[p][1];
     if (y < 0.2 || y > 0.8) continue;
-    double sigma[6];
-    run.points().cauchy(p, sigma);
+    const auto sigma = run.cauchy(p);
     sum -= sigma[1] / ((990.0 - 1000.0 * i) * 9.81 * (1.0 - y));
     n++;
   }

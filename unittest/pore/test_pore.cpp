@@ -238,8 +238,7 @@ SERIAL_TEST(LargeStrain, Consolidation)
   run.commands("compute n all mpm/atom porosity\n");
   run_to(run, 0.202);
   double volume = 0.0;
-  auto *compute = run.lmp->modify->get_compute_by_id("n");
-  compute->compute_peratom();
+  auto *compute = run.per_atom("n");
   for (int i = 0; i < run.n(); i++) {
     const double J = run.points().jacobian(i);
     volume += J * run.lmp->atom->vfrac[i];
@@ -689,8 +688,7 @@ SERIAL_TEST(Geostatic, StaysAtRest)
       for (int i = 0; i < run.n(); i++) {
         const double z = 1.0 - run.x()[i][1];
         EXPECT_NEAR(p[i] / 9810.0, z, 1e-13);
-        double sigma[6];
-        run.points().cauchy(i, sigma);
+        const auto sigma = run.cauchy(i);
         EXPECT_DOUBLE_EQ(sigma[0], 0.5 * sigma[1]);
         EXPECT_DOUBLE_EQ(sigma[2], sigma[0]);
         const double error = std::fabs(sigma[1] + 1002 * 9.81 * z) / cell;
@@ -715,8 +713,7 @@ SERIAL_TEST(Geostatic, Soils)
     Scene run(ground(20, GEOSTATIC, std::string("density 2002 ") + law, 0.1) + "run 0\n");
     for (int i = 0; i < run.n(); i++) {
       const double z = 1.0 - run.x()[i][1];
-      double sigma[6];
-      run.points().cauchy(i, sigma);
+      const auto sigma = run.cauchy(i);
       EXPECT_NEAR(sigma[0] / sigma[1], 0.5, 1e-12);
       if (std::fabs(z - 0.5) < 0.35) EXPECT_NEAR(sigma[1] / (-1002 * 9.81 * z), 1.0, 0.02);
     }
@@ -752,8 +749,7 @@ SERIAL_TEST(Geostatic, LayersInThreeDimensions)
     EXPECT_NEAR(p[i], 9810.0 * (z - 0.3), 1e-9);
     if (z < 0.3 || z > 1.0 || std::fabs(z - 0.55) < 0.1) continue;
     const double total = 9.81 * (z < 0.55 ? 1700 * (z - 0.15) : 1700 * 0.4 + 2200 * (z - 0.55));
-    double sigma[6];
-    run.points().cauchy(i, sigma);
+    const auto sigma = run.cauchy(i);
     most = std::max(most, std::fabs(sigma[2] - (z < 0.55 ? 0.8 : 1.0) * p[i] + total));
     EXPECT_NEAR(sigma[0] / sigma[2], 0.7, 1e-13);
   }

@@ -342,8 +342,7 @@ PARAMETER_TEST(
   for (const auto &at : exact) {
     run_to(run, at[0] + 0.5 * ramp, LONG);
     double volume = 0.0;
-    auto *compute = run.lmp->modify->get_compute_by_id("n");
-    compute->compute_peratom();
+    auto *compute = run.per_atom("n");
     for (int i = 0; i < run.n(); i++) {
       const double J = run.points().jacobian(i);
       volume += J * run.lmp->atom->vfrac[i];

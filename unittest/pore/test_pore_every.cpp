@@ -123,8 +123,7 @@ TEST(Default, WaitsWhereItCan)
                        "fix water",
                        "variable p atom 1e3*(1-y)\nvariable w equal 10*step\nfix water") +
               strprintf("timestep 4e-5\ncompute pore all mpm/atom pore\nrun %d\n", steps));
-    auto *const compute = run.lmp->modify->get_compute_by_id("pore");
-    compute->compute_peratom();
+    auto *const compute = run.per_atom("pore");
     return std::vector<double>(compute->vector_atom, compute->vector_atom + run.n());
   };
   const std::string thin = "initial 1e3 ylo pressure 0 ", even = "initial v_p ylo pressure 1e3 ";

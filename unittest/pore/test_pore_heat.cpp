@@ -36,8 +36,7 @@ double pressure(const std::string &scene)
   });
   run_to(run, 0.03);
   EXPECT_NEAR(water.mass() / before, 1.0, 1e-13);
-  auto *const T = run.lmp->modify->get_compute_by_id("T");
-  T->compute_peratom();
+  auto *const T = run.per_atom("T");
   double warmth = 0.0;
   for (int i = 0; i < run.n(); i++) warmth += (T->vector_atom[i] - 293.0) / run.n();
   return sum / n / warmth;

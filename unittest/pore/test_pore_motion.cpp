@@ -249,8 +249,7 @@ SERIAL_TEST(Momentum, IsKept)
   std::map<tagint, double> mass;
   double start[2], now[2], moved[2], carried[2] = {}, most = 0.0;
   run.each_step([&](double **) {
-    auto *compute = run.lmp->modify->get_compute_by_id("w");
-    compute->compute_peratom();
+    auto *compute = run.per_atom("w");
     for (int d = 0; d < 2; d++) {
       now[d] = moved[d] = 0.0;
       for (int i = 0; i < run.n(); i++) {

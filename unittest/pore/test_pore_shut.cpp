@@ -39,8 +39,7 @@ TEST(Shut, IsTold)
     const double before = water.mass(), came = run.fix("water")->compute_scalar();
     run.commands("fix dt all mpm/dt 0.3 until 0.225\nrun 100000\n");
     EXPECT_EQ(over_ranks(run.lmp->error->get_numwarn(), MPI_SUM), fast + 1.0) << law;
-    auto *compute = run.lmp->modify->get_compute_by_id("n");
-    compute->compute_peratom();
+    auto *compute = run.per_atom("n");
     const double *const p = water.pressures();
     double least = 1.0, lowest = 1.0;
     for (int i = 0; i < run.n(); i++) {

@@ -310,8 +310,7 @@ Tube tube(double h, double meet, const std::string &options)
       bore = error / u;
     }
     if (r > 1.4) continue;
-    double sigma[6];
-    run.points().cauchy(i, sigma);
+    const auto sigma = run.cauchy(i);
     const double hoop = p / 3.0 * (1.0 + 4.0 / (r * r));
     stress += m * pow(sigma[2] - hoop, 2);
     exact_stress += m * hoop * hoop;

@@ -235,8 +235,7 @@ SERIAL_TEST(Rest, OnEachOther)
       EXPECT_NEAR(measured(name + ": force over weight", force(run, 0) / 48.0), 1.0, 1e-3);
       double square = 0.0, all = 0.0;
       for (int i = 0; i < run.n(); i++) {
-        double sigma[6];
-        run.points().cauchy(i, sigma);
+        const auto sigma = run.cauchy(i);
         const double weight = 12.0 - run.reference(i)[0], m = run.mass()[i];
         square += m * pow(sigma[0] + weight, 2);
         all += m * weight * weight;

@@ -808,8 +808,7 @@ TEST(AffineSpin, IsThatOfTheShapeFunctions)
         v[1] = omega * (x[0] - 3.0);
       });
       run.commands("run 0\n");
-      auto *compute = run.lmp->modify->get_compute_by_id("q");
-      compute->compute_peratom();
+      auto *compute = run.per_atom("q");
       for (int i = 0; i < run.n(); i++) {
         const double *x = run.x()[i];
         const double L = run.lmp->atom->rmass[i] * omega * (c.D(x[0]) + c.D(x[1]));

@@ -55,8 +55,7 @@ TEST(PlasticWave, TwoWaveStructure)
   const double X2 = C2 * time, X1 = C1 * time;
   std::vector<std::array<double, 3>> profile;
   for (int i = 0; i < run.n(); i++) {
-    double sigma[6];
-    run.points().cauchy(i, sigma);
+    const auto sigma = run.cauchy(i);
     const double X = run.reference(i)[0], s = -sigma[0];
     const int k = X < 0.9 * X2 && X > 0.3 * X2                 ? 0
         : X > X2 + 0.3 * (X1 - X2) && X < X2 + 0.8 * (X1 - X2) ? 1
@@ -130,8 +129,7 @@ static Tube tube(double h, double p, double nu, double yield)
   run.commands(strprintf("timestep %.17g\nrun %d\n", dt, (int) (time / dt)));
   Tube t = {0.0, 0.0};
   int n = 0;
-  auto *eplastic = run.lmp->modify->get_compute_by_id("e");
-  eplastic->compute_peratom();
+  auto *eplastic = run.per_atom("e");
   for (int i = 0; i < run.n(); i++) {
     const double *X = run.reference(i), *x = run.x()[i];
     const double R = sqrt(X[0] * X[0] + X[1] * X[1]), u = sqrt(x[0] * x[0] + x[1] * x[1]) - R;
@@ -196,8 +194,7 @@ TEST(TaylorBar, SteelThatHeats)
           "compute p all mpm/atom eplastic temperature\nrun 20000\n",
           h));
   EXPECT_NEAR(run.time(), 8.0e-5, 1.0e-7);
-  auto *history = run.lmp->modify->get_compute_by_id("p");
-  history->compute_peratom();
+  auto *history = run.per_atom("p");
   double top = 0.0, foot = 0.0, eplastic = 0.0, temperature = 0.0;
   for (int i = 0; i < run.n(); i++) {
     const double *x = run.x()[i];

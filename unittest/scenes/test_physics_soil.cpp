@@ -93,8 +93,7 @@ TEST(InfiniteSlope, SlidesWhenTooSteep)
                 "fix end all halt 10 v_t > 0.8 error continue\nrun 100000\n");
       double ratio = 0.0, speed = 0.0, n = 0.0;
       for (int i = 0; i < run.n(); i++) {
-        double s[6];
-        run.points().cauchy(i, s);
+        const auto s = run.cauchy(i);
         ratio += std::abs(s[3] / s[1]);
         speed = std::max(speed, std::abs(run.v()[i][0]));
         n++;

@@ -293,8 +293,7 @@ static double fracture(const std::string &options)
     for (int i = 0; i < run.n(); i++) {
       const double X = run.reference(i)[0] - 2.0;
       if (std::abs(X) > 1.0) continue;
-      double sigma[6];
-      run.points().cauchy(i, sigma);
+      const auto sigma = run.cauchy(i);
       mean += sigma[0];
       n += 1.0;
       xX += X * run.x()[i][0];
