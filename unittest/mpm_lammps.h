@@ -653,6 +653,13 @@ inline double bspline_slope(int order, double u)
   return sign * (a < 1.0 ? -2.0 * a + 1.5 * a * a : (a < 2.0 ? -0.5 * (2.0 - a) * (2.0 - a) : 0.0));
 }
 
+/** Makes largest at least as large as the magnitude of a value; not a number is infinite, while
+ *  std::max passes over it. */
+inline void grow(double &largest, double value)
+{
+  largest = std::max(largest, std::isnan(value) ? INFINITY : std::fabs(value));
+}
+
 /** Shows a measured number in the output of the test, and returns it. */
 inline double measured(const std::string &what, double value)
 {

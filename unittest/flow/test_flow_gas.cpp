@@ -102,7 +102,7 @@ SERIAL_TEST(Slug, Swings)
       run.each_step([&](double **) {
         t.push_back(run.time());
         v.push_back(run.v()[0][0]);
-        if (run.time() > 0.75) fastest = std::max(fastest, std::fabs(v.back()));
+        if (run.time() > 0.75) grow(fastest, v.back());
       });
       run.commands("run 300\n");
       const auto what = strprintf("%dd, %d cells: ", dim, n);
@@ -294,7 +294,7 @@ SERIAL_TEST(Splash, KeepsGas)
   double most = 0.0, wrong = 0.0;
   run.each_step([&](double **) {
     most = std::max(most, gas(run, COUNT));
-    wrong = std::max(wrong, std::fabs(gas(run, VOLUME) / 0.45 - 1.0));
+    grow(wrong, gas(run, VOLUME) / 0.45 - 1.0);
   });
   run.commands("run 700\n");
   EXPECT_GT(measured("most pockets", most), 1.0);

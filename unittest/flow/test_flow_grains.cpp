@@ -252,8 +252,8 @@ SERIAL_TEST(Grain, KeepsMomentum)
       double scale = 0.0, most = 0.0, given = 0.0;
       for (int d = 0; d < dim; d++) {
         scale += std::fabs(of_grains.p[d]);
-        most = std::max(most, std::fabs(now.p[d] - start.p[d]));
-        given = std::max(given, std::fabs(later.p[d] - of_grains.p[d]));
+        grow(most, now.p[d] - start.p[d]);
+        grow(given, later.p[d] - of_grains.p[d]);
       }
       EXPECT_LT(measured(strprintf("%dd, %s: momentum", dim, laws.c_str()), most / scale), 1e-12);
       EXPECT_GT(measured("given", given / scale), 1e-3);

@@ -112,7 +112,7 @@ struct Layers {
       square += exact * exact;
       const double here = stress -
           g * (rho[0] * std::min(y, interface()) + rho[1] * std::max(0.0, y - interface()));
-      worst = std::max(worst, std::fabs(run.points().tau[i][3] - here));
+      grow(worst, run.points().tau[i][3] - here);
     }
     return {std::sqrt(sum / square), worst / std::fabs(stress)};
   }
@@ -524,9 +524,7 @@ SERIAL_TEST(Inflow, HasItsDensity)
   double worst = 0.0, mass = 0.0;
   for (int i = 0; i < run.n(); i++) {
     const bool in = run.lmp->atom->mask[i] & oil;
-    worst = std::max(
-        worst,
-        std::fabs(run.lmp->atom->rmass[i] / run.lmp->atom->vfrac[i] - (in ? 800.0 : 1000.0)));
+    grow(worst, run.lmp->atom->rmass[i] / run.lmp->atom->vfrac[i] - (in ? 800.0 : 1000.0));
     if (in) mass += run.lmp->atom->rmass[i];
   }
   EXPECT_LT(worst, 1e-9);

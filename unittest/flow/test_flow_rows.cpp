@@ -128,7 +128,7 @@ TEST(Rows, SpreadSolvesTheEquations)
         EXPECT_TRUE(report.converged()) << report.describe();
         double worst = 0.0;
         for (int i = 0; i < rows.size(); i++)
-          worst = std::max(worst, std::fabs(x[i] - noise(of.cells.grid, rows.cell_at(i))));
+          grow(worst, x[i] - noise(of.cells.grid, rows.cell_at(i)));
         EXPECT_LT(of.most(worst), 1e-10) << dim << " " << n << " " << faces;
         EXPECT_LT(report.iterations, 60);    // all unknowns with the diagonal: up to 110
       }
@@ -166,8 +166,8 @@ TEST(Rows, PoissonIsThatOfTheLattice)
       const auto compare = [&]() {
         double worst = 0.0, size = 0.0;
         for (int i = 0; i < rows.size(); i++) {
-          worst = std::max(worst, std::fabs(of_rows[i] - z[rows.cell_at(i)]));
-          size = std::max(size, std::fabs(of_rows[i]));
+          grow(worst, of_rows[i] - z[rows.cell_at(i)]);
+          grow(size, of_rows[i]);
         }
         EXPECT_LT(of.most(worst), 1e-12 * of.most(size)) << dim << " " << outside;
       };

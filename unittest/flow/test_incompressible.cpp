@@ -153,7 +153,7 @@ double error_of_profile(Scene &run, int n, const std::vector<double> &y,
       su += run.v()[i][0];
       suy += dy * run.v()[i][0];
     }
-    worst = std::max(worst, std::fabs((su * syy - suy * sy) / (s * syy - sy * sy) - u[k]));
+    grow(worst, (su * syy - suy * sy) / (s * syy - sy * sy) - u[k]);
   }
   return worst;
 }
@@ -504,9 +504,7 @@ SERIAL_TEST(Tank, AtRest)
       EXPECT_LT(measured(std::string(options) + ": speed", fix->compute_vector(FASTEST)), 1e-11);
       double worst = 0.0;
       for (int i = 0; i < run.n(); i++)
-        worst = std::max(
-            worst,
-            std::fabs(-run.points().tau[i][1] / (9810 * depth) - (1.0 - run.x()[i][1] / depth)));
+        grow(worst, -run.points().tau[i][1] / (9810 * depth) - (1.0 - run.x()[i][1] / depth));
       EXPECT_LT(measured("pressure", worst), 1e-10);
       EXPECT_NEAR(fix->compute_vector(WALLS + 2) / (9810 * depth * thick), 1.0, 1e-10);
       EXPECT_NEAR(fix->compute_vector(WALLS + 1) / (4905 * depth * depth * thick), 1.0, 1e-10);
@@ -609,7 +607,7 @@ SERIAL_TEST(Block, FirstPressure)
             if (far(i) < far(nearest)) nearest = i;
           const double *const x = run.x()[nearest];
           const double p = -run.points().tau[nearest][0] / (9810 * H);
-          worst[k] = std::max(worst[k], std::fabs(p - released(a, H, x[0], x[1])));
+          grow(worst[k], p - released(a, H, x[0], x[1]));
         }
         worst[k] /= released(a, H, 0.0, 0.0);
       }

@@ -65,9 +65,9 @@ double difference(Scene &run, int axis, int steps, double top = 19.0)
   for (int k = 0; k < steps / 10; k++) {
     run.commands("run 10 post no\n");
     const double free = velocity(run, axis, 13.0, 30.0, top);
-    most = std::max(most, std::fabs(free));
+    grow(most, free);
     for (const double x : {-10.0, -0.5, 9.0})
-      off = std::max(off, std::fabs(velocity(run, axis, x, x + 1.0, top) - free));
+      grow(off, velocity(run, axis, x, x + 1.0, top) - free);
   }
   return off / most;
 }
@@ -129,8 +129,8 @@ SERIAL_TEST(Column, IsAStripWithoutEnd)
         column.commands("run 20 post no\n");
         for (int d = 0; d < 2; d++) {
           const double v = velocity(strip, d, -1.0, 30.0, 18.0);
-          most = std::max(most, std::fabs(v));
-          off = std::max(off, std::fabs(v - velocity(column, d, -1.0, 30.0, 18.0)));
+          grow(most, v);
+          grow(off, v - velocity(column, d, -1.0, 30.0, 18.0));
         }
       }
       EXPECT_GT(most, 0.1);
@@ -154,8 +154,7 @@ SERIAL_TEST(Level, AmplifiesTheRock)
     run.commands("run 5 post no\n");
     const double x[4] = {-10.0, -0.5, 9.0, 14.0};
     for (int j = 0; j < 4; j++)
-      most[j] =
-          std::max(most[j], std::fabs(velocity(run, 0, x[j], x[j] + (j < 3 ? 1.0 : 2.0), 19.0)));
+      grow(most[j], velocity(run, 0, x[j], x[j] + (j < 3 ? 1.0 : 2.0), 19.0));
   }
   // the mean over the first cell is that of points 1/4 and 3/4 below the surface
   const double k = kH / H, mean = 0.5 * (cos(0.25 * k) + cos(0.75 * k));
@@ -255,9 +254,9 @@ SERIAL_TEST(Level, InSpaceAndOtherUnits)
         }
       return sum / n;
     };
-    most = std::max(most, std::fabs(mean(5.0, 8.0)));
-    off = std::max(off, std::fabs(mean(-3.0, -2.0) - mean(5.0, 8.0)));
-    off = std::max(off, std::fabs(mean(2.0, 3.0) - mean(5.0, 8.0)));
+    grow(most, mean(5.0, 8.0));
+    grow(off, mean(-3.0, -2.0) - mean(5.0, 8.0));
+    grow(off, mean(2.0, 3.0) - mean(5.0, 8.0));
   }
   EXPECT_GT(most, 1e-4);
   EXPECT_LT(measured("ground against column", off / most), 0.01);

@@ -194,8 +194,7 @@ PARAMETER_TEST(Rock, ShakesTheLayer, double, Values(1.0, 1.5707963267948966))
   double most = 0.0;
   for (int k = 0; k < 80; k++) {
     run.commands(strprintf("run %d post no\n", (int) (2.0 * PI / omega / 0.5 / 40.0)));
-    most = std::max(most,
-                    std::fabs(waves(run, 19.0, 20.3, true)[0] + waves(run, 19.0, 20.3, true)[1]));
+    grow(most, waves(run, 19.0, 20.3, true)[0] + waves(run, 19.0, 20.3, true)[1]);
   }
   const double exact = 1.0 / sqrt(cos(kH) * cos(kH) + z * z * sin(kH) * sin(kH));
   EXPECT_NEAR(measured("top over rock, over exact", most / 2e-4 / exact), 1.0, 0.02);
@@ -218,7 +217,7 @@ SERIAL_TEST(Rock, ShakesTheLayerFromAPlaneOfNodes)
     for (int k = 0; k < 80; k++) {
       run.commands(strprintf("run %d post no\n", (int) (2.0 * PI / omega / 0.5 / 40.0)));
       const auto top = waves(run, 19.0, 20.3, true);
-      most[dense] = std::max(most[dense], std::fabs(top[0] + top[1]));
+      grow(most[dense], top[0] + top[1]);
     }
     EXPECT_NEAR(measured("top over rock, over exact", most[dense] / 2e-4 * z), 1.0, 0.02);
   }
@@ -248,8 +247,8 @@ SERIAL_TEST(RigidBase, IsAWeightInItsFrame)
   }
   double most = 0.0, off = 0.0;
   for (int k = 0; k < 60; k++) {
-    most = std::max(most, std::fabs(top[0][k]));
-    off = std::max(off, std::fabs(top[0][k] - top[1][k]));
+    grow(most, top[0][k]);
+    grow(off, top[0][k] - top[1][k]);
   }
   EXPECT_GT(most, V);
   EXPECT_LT(measured("difference of the two", off / most), 0.01);

@@ -152,7 +152,7 @@ SERIAL_TEST(MeshGrid, PatchOfAnyCells)
       for (const auto &s : all) {
         auto &most = worst[k];
         const double J = MPMPoints::det(s.F);
-        most = std::max(most, std::fabs(J * s.stress[0] / s.F[0] / 0.05 - 1.0));
+        grow(most, J * s.stress[0] / s.F[0] / 0.05 - 1.0);
         for (int c = 1; c < (dim == 3 ? 6 : 2); c++)
           most = std::max(most, std::fabs(s.stress[c]) / 0.05);
         for (int c = 0; c < 9; c++) most = std::max(most, std::fabs(s.F[c] - all[0].F[c]) / 0.05);

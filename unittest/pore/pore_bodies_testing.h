@@ -60,8 +60,8 @@ inline double water_difference(Scene &a, Scene &b)
   if (one.empty() || one.size() != other.size()) return 1.0e300;
   double most[2] = {0.0, 0.0};
   for (std::size_t k = 0; k < one.size(); k++) {
-    most[0] = std::max(most[0], std::fabs(one[k].p - other[k].p));
-    most[1] = std::max(most[1], std::fabs(one[k].S - other[k].S));
+    grow(most[0], one[k].p - other[k].p);
+    grow(most[1], one[k].S - other[k].S);
   }
   return std::max(measured("difference of pressures", most[0]),
                   measured("of saturations", most[1]));

@@ -358,7 +358,7 @@ SERIAL_TEST(Walls, ThatSeparate)
                      "ylo slip", "ylo separate") +
             "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5\nrun 400\n");
   double fastest = 0.0;
-  for (int i = 0; i < run.n(); i++) fastest = std::max(fastest, std::fabs(run.v()[i][1]));
+  for (int i = 0; i < run.n(); i++) grow(fastest, run.v()[i][1]);
   EXPECT_LT(measured("fastest", fastest), 0.002);
 }
 
@@ -551,7 +551,7 @@ TEST(Motion, IsTheSameWithOtherPhysics)
   EXPECT_LT(measured("water", water_difference(first, apart)), 1e-10);
   double most = 0.0;
   for (int i = 0; i < first.n(); i++)
-    for (int d = 0; d < 2; d++) most = std::max(most, std::fabs(first.x()[i][d] - apart.x()[i][d]));
+    for (int d = 0; d < 2; d++) grow(most, first.x()[i][d] - apart.x()[i][d]);
   EXPECT_LT(measured("places", over_ranks(most)), 1e-12);
 }
 
@@ -598,7 +598,7 @@ TEST(Restart, BeforeTheFirstRun)
     Scene again("read_restart " + file.name + "\n" + fixes + last);
     EXPECT_TRUE(identical(whole.gather(), again.gather())) << at_first;
     double fastest = 0.0;
-    for (int i = 0; i < again.n(); i++) fastest = std::max(fastest, std::fabs(again.v()[i][1]));
+    for (int i = 0; i < again.n(); i++) grow(fastest, again.v()[i][1]);
     fastest = over_ranks(fastest, MPI_MAX);
     if (at_first[0] == 'g') EXPECT_LT(measured("at rest", fastest / (9.81 * 2e-4)), 1e-10);
   }
@@ -661,7 +661,7 @@ double fall(Scene &run, double t)
 {
   double most = 0.0;
   for (int i = 0; i < run.n(); i++)
-    for (int d = 0; d < 3; d++) most = std::max(most, std::fabs(run.v()[i][d]));
+    for (int d = 0; d < 3; d++) grow(most, run.v()[i][d]);
   return over_ranks(most) / (9.81 * t);
 }
 const char *const GEOSTATIC = "2.2e8 1000 9810 soil m 0.4 constant 1e-3 geostatic 0.5 1";
@@ -750,7 +750,7 @@ SERIAL_TEST(Geostatic, LayersInThreeDimensions)
     if (z < 0.3 || z > 1.0 || std::fabs(z - 0.55) < 0.1) continue;
     const double total = 9.81 * (z < 0.55 ? 1700 * (z - 0.15) : 1700 * 0.4 + 2200 * (z - 0.55));
     const auto sigma = run.cauchy(i);
-    most = std::max(most, std::fabs(sigma[2] - (z < 0.55 ? 0.8 : 1.0) * p[i] + total));
+    grow(most, sigma[2] - (z < 0.55 ? 0.8 : 1.0) * p[i] + total);
     EXPECT_NEAR(sigma[0] / sigma[2], 0.7, 1e-13);
   }
   EXPECT_LT(measured("total stress over the weight of a cell", most / (2200 * 9.81 * 0.1)), 0.05);

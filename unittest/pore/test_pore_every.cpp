@@ -213,7 +213,7 @@ SERIAL_TEST(Geostatic, StaysAtRest)
                      "fix water", "fix g all gravity 9.81 vector 0 -1 0\nfix water") +
             strprintf("timestep %g\nrun 501\n", dt));
   double most = 0.0;
-  for (int i = 0; i < run.n(); i++) most = std::max(most, std::fabs(run.v()[i][1]));
+  for (int i = 0; i < run.n(); i++) grow(most, run.v()[i][1]);
   EXPECT_LT(measured("velocity", most / (9.81 * 501 * dt)), 1e-9);
 }
 
@@ -245,7 +245,7 @@ TEST(Restart, GoesOnWithOtherConditions)
       "variable v atom -0.01*y\nvelocity all set NULL v_v NULL\n";
   const auto range = [](Scene &run) {
     double most = 0.0;
-    for (const auto &point : water_of_points(run)) most = std::max(most, std::fabs(point.p));
+    for (const auto &point : water_of_points(run)) grow(most, point.p);
     return most;
   };
   const auto mean = [](Scene &run) {

@@ -261,7 +261,7 @@ SERIAL_TEST(Momentum, IsKept)
       }
       now[d] += moved[d];
       if (mass.empty()) start[d] = now[d];
-      most = std::max(most, std::fabs(now[d] - start[d] - carried[d]));
+      grow(most, now[d] - start[d] - carried[d]);
     }
     for (int i = 0; i < run.n(); i++) mass[run.lmp->atom->tag[i]] = run.mass()[i];
   });
@@ -292,7 +292,7 @@ SERIAL_TEST(TimeStep, IsThatOfTheFastWave)
   });
   run.commands("fix dt all mpm/dt 0.9\nrun 3000\n");
   double most = 0.0;
-  for (int i = 0; i < run.n(); i++) most = std::max(most, std::fabs(run.v()[i][1]));
+  for (int i = 0; i < run.n(); i++) grow(most, run.v()[i][1]);
   EXPECT_LT(measured("fastest", most), 2e-4);
 }
 
@@ -317,7 +317,7 @@ SERIAL_TEST(Geostatic, StaysAtRest)
                      "fix water", "fix g all gravity 9.81 vector 0 -1 0\nfix water") +
             "timestep 4e-5\nrun 500\n");
   double most = 0.0;
-  for (int i = 0; i < run.n(); i++) most = std::max(most, std::fabs(run.v()[i][1]));
+  for (int i = 0; i < run.n(); i++) grow(most, run.v()[i][1]);
   EXPECT_LT(measured("velocity over that of free fall", most / (9.81 * 500 * 4e-5)), 1e-10);
 }
 

@@ -221,7 +221,7 @@ double fall(Scene &run, double t)
 {
   double most = 0.0;
   for (int i = 0; i < run.n(); i++)
-    for (int d = 0; d < 3; d++) most = std::max(most, std::fabs(run.v()[i][d]));
+    for (int d = 0; d < 3; d++) grow(most, run.v()[i][d]);
   return over_ranks(most) / (9.81 * t);
 }
 const char *const SAND = "2.2e8 1000 9810 soil m 0.4 constant 1e-3 ",
@@ -256,7 +256,7 @@ SERIAL_TEST(Geostatic, SuctionAboveTheTable)
         }
         const auto sigma = run.cauchy(i);
         const double chi = options[0] ? Se : S[i];
-        worst = std::max(worst, std::fabs(sigma[1] - chi * p[i] + above));
+        grow(worst, sigma[1] - chi * p[i] + above);
       }
       EXPECT_NEAR(weight / exact, 1.0, 1e-13);
       EXPECT_LT(measured("total stress over the weight of a cell", worst / (2002 * 9.81 / n)),
@@ -527,7 +527,7 @@ SERIAL_TEST(Units, MetalInThreeDimensions)
   run.commands("run 200\n");
   double most = 0.0;
   for (int i = 0; i < run.n(); i++)
-    for (int d = 0; d < 3; d++) most = std::max(most, std::fabs(run.v()[i][d]));
+    for (int d = 0; d < 3; d++) grow(most, run.v()[i][d]);
   EXPECT_LT(measured("velocity over that of free fall", most / (2.0 * 2e-4)), 1e-9);
 }
 

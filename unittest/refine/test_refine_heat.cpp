@@ -274,8 +274,8 @@ TEST(Refine, HeatRanksAndRestart)
       EXPECT_EQ(one.size(), other.size());
       double most = 0.0, size = 0.0;
       for (std::size_t k = 0; k < one.size(); k++) {
-        most = std::max(most, std::fabs(one[k].T - other[k].T));
-        size = std::max(size, std::fabs(one[k].T));
+        grow(most, one[k].T - other[k].T);
+        grow(size, one[k].T);
       }
       return most / size;
     };

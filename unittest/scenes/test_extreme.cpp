@@ -577,7 +577,7 @@ TEST(DensityRatio, ColumnsAtRest)
       run.each_step(
           [&](double **) {
             for (int i = 0; i < run.n(); i++)
-              if (run.lmp->atom->type[i] == 2) fastest = std::max(fastest, std::abs(run.v()[i][1]));
+              if (run.lmp->atom->type[i] == 2) grow(fastest, run.v()[i][1]);
           },
           10);
       run.commands("run 10000\n");
@@ -640,8 +640,8 @@ TEST(DensityRatio, DamBreakUnderGas)
       if (step > 0) impulse += walls->compute_vector(0) * run.lmp->update->dt;
       if (step % 40 > 0) return;
       const double p = run.sums().p[0];
-      scale = std::max(scale, std::abs(p));
-      error = std::max(error, std::abs(p + impulse));
+      grow(scale, p);
+      grow(error, p + impulse);
       double mean = 0.0, volume = 0.0;
       for (const auto &s : run.gather()) {
         if (s.type != 2) continue;

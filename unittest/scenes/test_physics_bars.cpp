@@ -84,12 +84,12 @@ class SinglePoint : public ::testing::TestWithParam<const char *> {
     run.each_step([&](double **) {
       const double t = run.time();
       const double v = run.v()[0][0];
-      error_usl = std::max(error_usl, std::abs(v - v_usl));
+      grow(error_usl, v - v_usl);
       const double a = -E * strain;
       const double L = v_usl + dt * a / run.x()[0][0];    // N = x
       strain += dt * L / (1.0 + 0.5 * dt * L);            // logarithmic, to third order
       v_usl += dt * a;
-      error_v = std::max(error_v, std::abs(v - 0.1 * cos(2.0 * PI * t)));
+      grow(error_v, v - 0.1 * cos(2.0 * PI * t));
       crossings.add(t, v);
       const double energy = (run.sums().kinetic + run.stored_energy()) / 0.005;
       energy_min = std::min(energy_min, energy);
@@ -401,9 +401,9 @@ static void collide(const std::string &options, Impact c)
         const auto all = run.sums();
         const double t = run.time();
         if (t == 0.0) p_start = all.p[0];
-        drift = std::max(drift, std::abs(all.p[0] - p_start));
+        grow(drift, all.p[0] - p_start);
         // equal bars: KE/KE0 = 1 - ct/L, then ct/L - 1
-        worst = std::max(worst, std::abs(all.kinetic / start - std::abs(1.0 - 10.0 * t)));
+        grow(worst, all.kinetic / start - std::abs(1.0 - 10.0 * t));
         if (t < 0.06 || t > 0.12) return;
         // plateau: the waves have passed this region, the reflected ones have not come back
         double sum = 0.0;

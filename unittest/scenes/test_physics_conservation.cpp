@@ -42,7 +42,7 @@ static double largest_stress(Scene &run)
 {
   double s = 0.0;
   for (int i = 0; i < run.n(); i++)
-    for (int c = 0; c < 6; c++) s = std::max(s, std::abs(run.points().tau[i][c]));
+    for (int c = 0; c < 6; c++) grow(s, run.points().tau[i][c]);
   return s;
 }
 
@@ -68,8 +68,8 @@ class RigidMotion : public ::testing::TestWithParam<int> {
       for (int d = 0; d < 3; d++) {
         const double fall = d == 1 ? g : 0.0;
         const double exact = run.reference(i)[d] + v[d] * t - 0.5 * fall * t * (t + dt);
-        error = std::max(error, std::abs(run.x()[i][d] - exact));
-        error_v = std::max(error_v, std::abs(run.v()[i][d] - (v[d] - fall * t)));
+        grow(error, run.x()[i][d] - exact);
+        grow(error_v, run.v()[i][d] - (v[d] - fall * t));
       }
     EXPECT_LT(error, 1.0e-12);
     EXPECT_LT(error_v, 1.0e-12);
@@ -144,11 +144,11 @@ PARAMETER_TEST(Patch, AffineVelocity, const char *,
           expected = d == e;
           for (int k = 0; k < 3; k++) expected += 0.1 * A[d][k] * F[3 * k + e];
         }
-        error_F = std::max(error_F, std::abs(F[3 * d + e] - expected));
-        error_v = std::max(error_v, std::abs(run.affine()[i][3 * e + d] - A[d][e]));
+        grow(error_F, F[3 * d + e] - expected);
+        grow(error_v, run.affine()[i][3 * e + d] - A[d][e]);
       }
-      error_v = std::max(error_v, std::abs(run.v()[i][d] - v));
-      error = std::max(error, std::abs(run.x()[i][d] - run.reference(i)[d] - 0.1 * v));
+      grow(error_v, run.v()[i][d] - v);
+      grow(error, run.x()[i][d] - run.reference(i)[d] - 0.1 * v);
     }
   const std::string name = strprintf("patch %s: ", GetParam());
   EXPECT_LT(measured(name + "position", error), 1.0e-13);
@@ -165,8 +165,7 @@ class AffineFit : public ::testing::TestWithParam<std::tuple<int, const char *>>
     double worst = 0.0;
     for (int i = 0; i < run.n(); i++)
       for (int d = 0; d < dim; d++)
-        for (int e = 0; e < dim; e++)
-          worst = std::max(worst, std::abs(run.affine()[i][dim * e + d] - A[d][e]));
+        for (int e = 0; e < dim; e++) grow(worst, run.affine()[i][dim * e + d] - A[d][e]);
     return worst;
   }
 };
@@ -279,9 +278,9 @@ PARAMETER_TEST(StressedPatch, InteriorStaysUniform, const char *,
     const double *X = run.reference(i);
     if (std::abs(X[0]) > 10.0 - reach || std::abs(X[1]) > 10.0 - reach) continue;
     n++;
-    error = std::max(error, std::abs(run.points().F[i][0] - 1.0 - rate * t));
-    error = std::max(error, std::abs(run.points().F[i][4] - 1.0 + 0.5 * rate * t));
-    error = std::max(error, std::abs(run.points().F[i][1]));
+    grow(error, run.points().F[i][0] - 1.0 - rate * t);
+    grow(error, run.points().F[i][4] - 1.0 + 0.5 * rate * t);
+    grow(error, run.points().F[i][1]);
   }
   ASSERT_GT(n, 20);
   EXPECT_LT(
@@ -359,20 +358,18 @@ PARAMETER_TEST(DrivenRotation, TenTurns, RotationCase, ValuesIn(driven_rotation_
       const double *s = run.points().tau[i];
       double norm = 0.0;
       for (int k = 0; k < 6; k++) norm += (k < 3 ? 1.0 : 2.0) * s[k] * s[k];
-      error_J = std::max(error_J, std::abs(run.points().jacobian(i) - J0));
-      error_invariants = std::max(error_invariants, std::abs(s[0] + s[1] + s[2] - trace0));
-      error_invariants = std::max(error_invariants, std::abs(sqrt(norm) - sqrt(norm0)));
-      turned = std::max(turned, std::abs(s[0] - s0[0]));
+      grow(error_J, run.points().jacobian(i) - J0);
+      grow(error_invariants, s[0] + s[1] + s[2] - trace0);
+      grow(error_invariants, sqrt(norm) - sqrt(norm0));
+      grow(turned, s[0] - s0[0]);
     }
   });
   run.commands("run 1000\n");
   double error_x = 0.0, error_s = 0.0, error_F = 0.0;
   for (int i = 0; i < run.n(); i++) {
-    for (int k = 0; k < 9; k++) error_F = std::max(error_F, std::abs(run.points().F[i][k] - F0[k]));
-    for (int d = 0; d < 3; d++)
-      error_x = std::max(error_x, std::abs(run.x()[i][d] - run.reference(i)[d]));
-    for (int k = 0; k < 6; k++)
-      error_s = std::max(error_s, std::abs(run.points().tau[i][k] - s0[k]));
+    for (int k = 0; k < 9; k++) grow(error_F, run.points().F[i][k] - F0[k]);
+    for (int d = 0; d < 3; d++) grow(error_x, run.x()[i][d] - run.reference(i)[d]);
+    for (int k = 0; k < 6; k++) grow(error_s, run.points().tau[i][k] - s0[k]);
   }
   // after 1000 steps of 0.06 rad, round-off alone: 1e-10 of the stress, and of the modulus for
   // rubber, whose stress of 1e-3 of it is what J and F leave
@@ -440,7 +437,7 @@ PARAMETER_TEST(TwoDisks, Collision, DisksCase, ValuesIn(two_disks_cases))
     const auto all = run.sums(), one = run.sums(1), two = run.sums(2);
     for (int d = 0; d < 2; d++) {
       p = std::max(p, std::abs(all.p[d]) / momentum);
-      asymmetry = std::max(asymmetry, std::abs(one.x[d] + two.x[d] - 1.0));
+      grow(asymmetry, one.x[d] + two.x[d] - 1.0);
     }
     if (all.kinetic < lowest) {
       lowest = all.kinetic;
@@ -460,7 +457,7 @@ PARAMETER_TEST(TwoDisks, Collision, DisksCase, ValuesIn(two_disks_cases))
   for (std::size_t k = 0; k < points.size(); k++)
     for (int d = 0; d < 2; d++) {
       const auto &other = points[points.size() - 1 - k];
-      asymmetry = std::max(asymmetry, std::abs(points[k].x[d] + other.x[d] - 1.0));
+      grow(asymmetry, points[k].x[d] + other.x[d] - 1.0);
       asymmetry = std::max(asymmetry, std::abs(points[k].v[d] + other.v[d]) / 0.1);
     }
   measured(name + "asymmetry of points", asymmetry);
@@ -516,7 +513,7 @@ TEST(Rings, Collision)
     const auto one = run.sums(1), two = run.sums(2), all = run.sums();
     asymmetry = std::max(asymmetry, std::abs(one.x[0] + two.x[0]) / h);
     drift = std::max(drift, std::abs(all.p[0]) / (start.mass * 30.0));
-    worst = std::max(worst, std::abs(energy() / E0 - 1.0));
+    grow(worst, energy() / E0 - 1.0);
   }
   EXPECT_LT(measured("C3 asymmetry", asymmetry), 1.0e-8);
   EXPECT_LT(measured("C3 momentum", drift), 1.0e-12);
@@ -553,7 +550,7 @@ TEST(LedgerOnOff, SameTrajectory)
     double error = 0.0;
     for (std::size_t k = 0; k < a.size(); k++)
       for (int d = 0; d < 2; d++) {
-        error = std::max(error, std::abs(a[k].x[d] - b[k].x[d]));
+        grow(error, a[k].x[d] - b[k].x[d]);
         error = std::max(error, std::abs(a[k].v[d] - b[k].v[d]) / 0.1);
       }
     EXPECT_LT(measured(strprintf("ledger on/off, %s", options), error), 1.0e-12);
@@ -585,7 +582,7 @@ TEST(Ledger, ClosesToRoundOff)
     for (int k = 0; k < 40; k++) {
       run.commands("run 10 post no\n");
       e = run.compute_vector();
-      worst = std::max(worst, std::abs(e[RESIDUAL]));
+      grow(worst, e[RESIDUAL]);
       scale = std::max(scale, std::max(start, e[KINETIC] + e[STORED]));
       // and it is what it says it is
       const auto s = run.sums();
@@ -681,7 +678,7 @@ PARAMETER_TEST(SpinningDisk, AngularMomentum, SpinCase, ValuesIn(spinning_disk_c
     const auto s = run.sums();
     run.add_angular_momentum_of_motion(moved);
     p = std::max(p, std::max(std::abs(s.p[0]), std::abs(s.p[1])) / scale);
-    drift = std::max(drift, std::abs((s.L[2] - moved[2]) / start.L[2] - 1.0));
+    grow(drift, (s.L[2] - moved[2]) / start.L[2] - 1.0);
   });
   const int n = std::lround(3300 * c.revolutions);
   run.commands(strprintf("timestep %.17g\nrun %d\n", 2.0 * PI / SPIN_OMEGA / 3300.0, n));
@@ -732,7 +729,7 @@ PARAMETER_TEST(FreeBody, Invariants, const char *,
   run.each_step([&](double **) {
     const auto s = run.sums();
     run.add_angular_momentum_of_motion(moved);
-    mass = std::max(mass, std::abs(s.mass / start.mass - 1.0));
+    grow(mass, s.mass / start.mass - 1.0);
     for (int d = 0; d < 3; d++) {
       p = std::max(p, std::abs(s.p[d] - start.p[d]) / scale_p);
       L = std::max(L, std::abs(s.L[d] - moved[d] - start.L[d]) / scale_L);
@@ -953,8 +950,8 @@ TEST(SpinningRod, GainsNoShear)
           // F = R U, in the plane: tan(angle) = (F21 - F12)/(F11 + F22)
           const double a = atan2(F[3] - F[1], F[0] + F[4]);
           const double Uxy = cos(a) * F[1] + sin(a) * F[4], Uxx = cos(a) * F[0] + sin(a) * F[3];
-          shear = std::max(shear, std::abs(Uxy));
-          strain = std::max(strain, std::abs(Uxx - 1.0));
+          grow(shear, Uxy);
+          grow(strain, Uxx - 1.0);
         }
       },
       50);

@@ -94,8 +94,8 @@ static double hanging_bar(const HangingCase &c)
   for (int i = 0; i < run.n(); i++) {
     const double *X = run.reference(i);
     const double u = X[1] - run.x()[i][1], e = exact.displacement(-X[1]);
-    worst = std::max(worst, std::abs(u - e));
-    sideways = std::max(sideways, std::abs(run.x()[i][0] - X[0]));
+    grow(worst, u - e);
+    grow(sideways, run.x()[i][0] - X[0]);
     if (u > last) {
       last = u;
       exact_last = e;

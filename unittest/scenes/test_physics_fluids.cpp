@@ -549,7 +549,7 @@ TEST(FreeFlight, SinglePointOscillatesWithoutEnd)
         a -= DT * 4.0 * tau / DENSITY;
         const double g = 1.0 + DT * a;
         J *= (g * g - pow(DT * SHEAR, 2)) * (dim == 3 ? g : 1.0);
-        wrong = std::max(wrong, fabs(run.points().jacobian(0) / J - 1.0));
+        grow(wrong, run.points().jacobian(0) / J - 1.0);
         const double energy = energy_of_drop(run) / start;
         low = std::min(low, energy);
         high = std::max(high, energy);

@@ -406,7 +406,7 @@ timestep %.17g
       torque += run.x()[i][0] * force[i][1] - run.x()[i][1] * force[i][0];
     }
     worst = std::max(worst, sqrt(sum / run.n()));
-    most = std::max(most, std::abs(spin));
+    grow(most, spin);
     if (run.lmp->update->ntimestep > last) impulse += dt * torque;    // not again in a new run
     last = run.lmp->update->ntimestep;
   });

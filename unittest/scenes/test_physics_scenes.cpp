@@ -88,7 +88,7 @@ PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
           volume += run.points().jacobian(i) * run.lmp->atom->vfrac[i];
         }
         if (time.empty()) volume0 = volume;
-        volume_error = std::max(volume_error, std::abs(volume / volume0 - 1.0));
+        grow(volume_error, volume / volume0 - 1.0);
         time.push_back(run.time());
         Z.push_back((x + 0.25 * h) / a);
         H.push_back((y + 0.25 * h) / (2.0 * a));
@@ -364,13 +364,13 @@ TEST(GrainAtRest, HundredThousandSteps)
             if (run.lmp->atom->type[i] != 2) continue;
             const double f = run.lmp->atom->f[i][2] / (9.81 * start.mass) + 1.0;
             force += f;
-            worst = std::max(worst, std::abs(f - 1.0));
+            grow(worst, f - 1.0);
             n++;
           }
           const auto grain = run.sums(2);
           for (int d = 0; d < 3; d++) {
-            drift = std::max(drift, std::abs(grain.x[d] - start.x[d]));
-            drift = std::max(drift, std::abs(run.sums(1).x[d] - block.x[d]));
+            grow(drift, grain.x[d] - start.x[d]);
+            grow(drift, run.sums(1).x[d] - block.x[d]);
           }
           fastest = std::max(fastest, grain.kinetic + run.sums(1).kinetic);
         },

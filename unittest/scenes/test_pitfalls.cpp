@@ -53,7 +53,7 @@ TEST(Pitfall, NumbersKeepDoublePrecision)
   ASSERT_EQ(after.size(), before.size());
   double worst_v = 0.0, worst_x = 0.0, worst_move = 0.0, worst_mass = 0.0, worst_volume = 0.0;
   auto note = [](double &worst, double found, double expected) {
-    worst = std::max(worst, std::abs(found - expected));
+    grow(worst, found - expected);
   };
   for (std::size_t k = 0; k < after.size(); k++) {
     const int site = (int) after[k].tag - 1;

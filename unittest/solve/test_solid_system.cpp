@@ -87,9 +87,8 @@ TEST(SolidSystem, IsThatOfOneRank)
         const int64_t other = serial.grid.locate(index);
         ASSERT_GE(other, 0);
         for (int a = 0; a < scene.dim; a++) {
-          largest =
-              std::max(largest, std::fabs(x[node * scene.dim + a] - x1[other * scene.dim + a]));
-          size = std::max(size, std::fabs(x1[other * scene.dim + a]));
+          grow(largest, x[node * scene.dim + a] - x1[other * scene.dim + a]);
+          grow(size, x1[other * scene.dim + a]);
         }
       }
     if (system.npoints() > 0) { EXPECT_LT(largest, 1e-6 * size); }

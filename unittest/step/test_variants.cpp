@@ -168,8 +168,8 @@ TEST_P(CrossingNoise, ForcesOnNodes)
     for (int m = 1; m < 2000; m++)
       waves += 2.0 * m * k * pow(sin(0.5 * m * k) / (0.5 * m * k), order + 1) *
           sin(m * k * (node - 0.35));
-    exact = std::max(exact, std::abs(slopes / sum));
-    wave = std::max(wave, std::abs(waves / 0.7 / sum));
+    grow(exact, slopes / sum);
+    grow(wave, waves / 0.7 / sum);
   }
   EXPECT_NEAR(most / P / exact, 1.0, 1.0e-10);
   EXPECT_NEAR(wave / exact, 1.0,
@@ -188,8 +188,8 @@ TEST_P(CrossingNoise, VelocityInFlight)
     double most = 0.0;
     run.each_step([&](double **) {
       for (int i = 0; i < run.n(); i++) {
-        most = std::max(most, std::abs(run.v()[i][0] - V));
-        most = std::max(most, std::abs(run.v()[i][1] - 0.7 * V));
+        grow(most, run.v()[i][0] - V);
+        grow(most, run.v()[i][1] - 0.7 * V);
       }
     });
     run.commands("run 400\n");
@@ -471,8 +471,7 @@ TEST(ChangingSteps, StrainIsThatOfTheMotion)
     double worst = 0.0;
     const auto F = product(M(run.time() - c.late * last), inverse_M(-c.late * first));
     for (const auto &s : run.gather())
-      for (int k = 0; k < 4; k++)
-        worst = std::max(worst, std::abs(s.F[3 * (k / 2) + k % 2] - F[k]));
+      for (int k = 0; k < 4; k++) grow(worst, s.F[3 * (k / 2) + k % 2] - F[k]);
     EXPECT_LT(measured(std::string(c.scheme) + ": error of F", worst), c.tolerance);
   }
 }

@@ -81,13 +81,11 @@ TEST(Polypic, RoundTrip)
           double worst = 0.0, modes = 0.0;
           for (int i = 0; i < run.n(); i++)
             for (int d = 0; d < dim; d++) {
-              worst = std::max(worst, std::fabs(run.v()[i][d] - field(dim, run.x()[i], d, 0)));
+              grow(worst, run.v()[i][d] - field(dim, run.x()[i], d, 0));
               for (int a = 0; a < dim; a++)
-                worst = std::max(worst,
-                                 std::fabs(C[i][dim * a + d] - field(dim, run.x()[i], d, 1 << a)));
+                grow(worst, C[i][dim * a + d] - field(dim, run.x()[i], d, 1 << a));
               for (int m = 0; m < nmode && poly; m++)
-                modes = std::max(modes,
-                                 std::fabs(Q[i][dim * m + d] - field(dim, run.x()[i], d, bits[m])));
+                grow(modes, Q[i][dim * m + d] - field(dim, run.x()[i], d, bits[m]));
             }
           if (poly) {
             EXPECT_LT(worst, 1e-11);

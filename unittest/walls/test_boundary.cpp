@@ -49,8 +49,7 @@ double farthest(const std::vector<Scene::State> &before, const std::vector<Scene
   EXPECT_EQ(before.size(), after.size());
   double off = 0.0;
   for (std::size_t k = 0; k < after.size(); k++)
-    for (int d = 0; d < 3; d++)
-      off = std::max(off, std::fabs(after[k].x[d] - before[k].x[d] - displacement[d]));
+    for (int d = 0; d < 3; d++) grow(off, after[k].x[d] - before[k].x[d] - displacement[d]);
   return off;
 }
 /** A field without any symmetry. */
@@ -209,7 +208,7 @@ PARAMETER_TEST(EndOfAFunction, HasNoWeight, EndCase, ValuesIn(end_cases))
     for (std::size_t k = 0; k < found.size(); k++)
       for (int d = 0; d < 2; d++) {
         EXPECT_LT(std::abs(found[k].v[d] - expected[k].v[d]), 1.0e-4) << before;
-        change = std::max(change, std::abs(found[k].v[d] - (d == 0 ? 0.2 : -1.0)));
+        grow(change, found[k].v[d] - (d == 0 ? 0.2 : -1.0));
       }
     EXPECT_GT(change, 0.3);    // the wall acts
   }
@@ -239,7 +238,7 @@ run 0
     double worst = 0.0;
     for (std::size_t k = 0; k < after.size(); k++)
       if (before[k].x[0] == 0.0 || before[k].x[1] == 0.0 || before[k].x[2] == 0.0)
-        for (int d = 0; d < 3; d++) worst = std::max(worst, std::abs(after[k].v[d]));
+        for (int d = 0; d < 3; d++) grow(worst, after[k].v[d]);
     EXPECT_LT(measured(shape, worst), 1.0e-14);
   }
 }
@@ -311,8 +310,7 @@ PARAMETER_TEST(Balance, ReactionIsTheChangeOfMomentum, WallsCase, ValuesIn(balan
     for (auto *fix : run.lmp->modify->get_fix_by_style("^mpm/boundary$"))
       for (int d = 0; d < 3; d++) {
         expected[d] -= 0.03 * fix->compute_vector(d);
-        if (fix->id == std::string("w"))
-          largest = std::max(largest, std::abs(fix->compute_vector(d)));
+        if (fix->id == std::string("w")) grow(largest, fix->compute_vector(d));
       }
     for (int d = 0; d < 3; d++) expected[d] += 0.03 * start.mass * 0.3 * g[d] / length;
   }
@@ -794,7 +792,7 @@ TEST(Motion, FlipFollowsTheWalls)
     double worst = 0.0;
     for (auto &s : run.gather())
       if (std::count(chosen.begin(), chosen.end(), (tagint) s.tag))
-        worst = std::max(worst, std::abs(s.v[2] - velocity(run.evaluate("time"))));
+        grow(worst, s.v[2] - velocity(run.evaluate("time")));
     EXPECT_EQ(over_ranks(chosen.size()), 64);
     // the velocity has changed by 0.004, the wall has moved by 0.003
     EXPECT_LT(measured(std::string("FLIP on the wall, difference to its velocity, ") + kind, worst),
@@ -881,7 +879,7 @@ TEST(Motion, FlipTakesFromTheOldVelocityAtACutFace)
     for (std::size_t k = 0; k < before.size(); k++) {
       const double change = after[k].v[1] - before[k].v[1];
       if (before[k].x[1] < 0.5) lost += change / 64.0;    // 64 points next to the wall
-      largest = std::max(largest, std::abs(change));
+      grow(largest, change);
     }
     if (arrives)
       EXPECT_GT(over_ranks(lost), 0.05 * 0.5);
@@ -946,8 +944,7 @@ TEST(Rotation, RegionThatTurnsAndMoves)
   ASSERT_EQ(before.size(), after.size());
   double off = 0.0;
   for (std::size_t k = 0; k < after.size(); k++)
-    for (int d = 0; d < 2; d++)
-      off = std::max(off, std::abs(after[k].x[d] - before[k].x[d] - (d == 0 ? 2.0 : 0.0)));
+    for (int d = 0; d < 2; d++) grow(off, after[k].x[d] - before[k].x[d] - (d == 0 ? 2.0 : 0.0));
   EXPECT_LT(measured("off after one turn", off), 1.0e-10);
 }
 
@@ -1133,7 +1130,7 @@ void compare_with_faces(const std::string &kind)
         for (std::size_t k = 0; k < face.points.size(); k++)
           for (int d = 0; d < 2; d++) {
             const double one = face.points[k].stress[d];
-            largest = std::max(largest, std::fabs(one));
+            grow(largest, one);
             EXPECT_LT(std::fabs(one - region.points[k].stress[d]), 1e-6);
           }
         EXPECT_GT(largest, 0.5);
@@ -1206,7 +1203,7 @@ TEST(Regions, RingOnAShaft)
           exact(r) / exact(a);
       sum += off * off;
       mean += off;
-      worst = std::max(worst, std::fabs(off));
+      grow(worst, off);
       n++;
     }
     EXPECT_GT(n, 100);
@@ -1402,7 +1399,7 @@ SERIAL_TEST(MeshWall, Distances)
         EXPECT_EQ(by_cells, exact);
       } else if (std::abs(exact) < 0.9 * cutoff && (exact > 0.0) != out) {
         far++;
-        largest = std::max(largest, std::abs(by_cells - exact));
+        grow(largest, by_cells - exact);
       }
     }
     EXPECT_GT(std::min(near, far), 100);

@@ -511,8 +511,7 @@ TEST(Cones, SharpEnds)
       ASSERT_EQ(sharp.size(), blunt.size());
       double most = 0.0;
       for (const auto &node : sharp)
-        for (int d = 0; d < 3; d++)
-          most = std::max(most, std::abs(node.second[d] - blunt.at(node.first)[d]));
+        for (int d = 0; d < 3; d++) grow(most, node.second[d] - blunt.at(node.first)[d]);
       EXPECT_LT(measured(std::string(kind) + ", " + cone + ": difference", most), 1.0e-5);
     }
 }
@@ -537,7 +536,7 @@ void expect_same(const std::vector<double> &a, const std::vector<double> &b, dou
                  const std::string &name)
 {
   double most = 0.0;
-  for (std::size_t k = 0; k < b.size(); k++) most = std::max(most, std::fabs(a[k] - b[k]));
+  for (std::size_t k = 0; k < b.size(); k++) grow(most, a[k] - b[k]);
   EXPECT_LE(measured(name + ": difference", most), tolerance);
 }
 
