@@ -6,7 +6,7 @@
 
 // Gas in pockets of fix mpm/incompressible: springs of gas, bubbles, pockets that split and join.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 using namespace MPM_TEST;
 
@@ -18,17 +18,6 @@ double gas(Scene &run, int which)
 {
   auto *fix = run.fix("w");
   return fix->compute_vector(fix->size_vector + which);
-}
-
-/** Frequency by the times at which something passes zero. */
-double frequency(const std::vector<double> &t, const std::vector<double> &of)
-{
-  std::vector<double> zeros;
-  for (std::size_t k = 1; k < of.size(); k++)
-    if (of[k - 1] * of[k] < 0.0)
-      zeros.push_back(t[k - 1] + (t[k] - t[k - 1]) * of[k - 1] / (of[k - 1] - of[k]));
-  return zeros.size() > 1 ? PI * ((double) zeros.size() - 1.0) / (zeros.back() - zeros.front())
-                          : 0.0;
 }
 
 /** Water of density 1 and length 0.4 in a closed tube of length 1, n cells in its width of 0.2. */
@@ -92,7 +81,7 @@ SERIAL_TEST(Slug, Swings)
   for (const int dim : {2, 3})
     for (const int n : {4, 8}) {
       if (dim == 3 && n == 8) continue;
-      std::vector<double> t, v;
+      Crossings crossings;
       Scene run(
           slug(dim, n, 0.3) + "velocity all set 0.06 0 0\n" +
           strprintf("fix w all mpm/incompressible %.17g 1 gas 10 1.4\ntimestep 0.004\nrun 1\n",
@@ -100,13 +89,13 @@ SERIAL_TEST(Slug, Swings)
       double fastest = 0.0;    // in the last period
       const double volume = gas(run, VOLUME);
       run.each_step([&](double **) {
-        t.push_back(run.time());
-        v.push_back(run.v()[0][0]);
-        if (run.time() > 0.75) grow(fastest, v.back());
+        crossings.add(run.time(), run.v()[0][0]);
+        if (run.time() > 0.75) grow(fastest, run.v()[0][0]);
       });
       run.commands("run 300\n");
       const auto what = strprintf("%dd, %d cells: ", dim, n);
-      EXPECT_NEAR(measured(what + "frequency over theory", frequency(t, v) / exact), 1.0, 0.01);
+      EXPECT_NEAR(measured(what + "frequency over theory", crossings.frequency() / exact), 1.0,
+                  0.01);
       EXPECT_NEAR(measured("speed over that before", fastest / 0.06), 0.983, 0.01);
       EXPECT_EQ(gas(run, COUNT), 2.0);
       EXPECT_NEAR(gas(run, VOLUME), volume, 1e-6 * volume);
@@ -182,18 +171,17 @@ SERIAL_TEST(Bubble, InAShell)
     for (const int n : {8, 16}) {
       if (dim == 3 && n == 16) continue;
       const double exact = dim == 2 ? std::sqrt(2.8 / std::log(2.0)) : std::sqrt(4.2 / 0.5);
-      std::vector<double> t, v;
+      Crossings crossings;
       Scene run(shell(dim, dim == 2 ? n : 6) + "timestep 0.05\n");
       run.each_step([&](double **) {
         double sum = 0.0;
         for (int i = 0; i < run.n(); i++)
           for (int d = 0; d < dim; d++) sum += run.v()[i][d] * run.x()[i][d];
-        t.push_back(run.time());
-        v.push_back(sum);
+        crossings.add(run.time(), sum);
       });
       run.commands(dim == 2 ? "run 120\n" : "run 50\n");
       EXPECT_NEAR(measured(strprintf("%dd, %d cells: frequency over theory", dim, dim == 2 ? n : 6),
-                           frequency(t, v) / exact),
+                           crossings.frequency() / exact),
                   1.0, dim == 2 ? 0.01 : 0.02);
       EXPECT_EQ(gas(run, COUNT), 1.0);
     }

@@ -7,7 +7,7 @@
 // Liquids of several densities and viscosities in fix mpm/incompressible: layers at rest, that turn
 // over, and that are sheared; waves; bodies between them; inflow.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 #include "group.h"
 
@@ -54,17 +54,14 @@ double wave(int n, double below, double above)
 {
   const double w = frequency(below, above), dt = 2.0 * PI / (200.0 * w);
   Scene run(layers(n, below, above, 0.02) + strprintf("timestep %.17g\n", dt));
-  std::vector<double> zeros;
-  double before = 0.0;
+  Crossings flat;
   run.each_step([&](double **) {
-    const double now = amplitude(run);
-    if (before * now < 0.0) zeros.push_back(run.time() - dt * now / (now - before));
-    before = now;
+    flat.add(run.time(), amplitude(run));
   });
   run.commands("run 165\n");
-  EXPECT_EQ(zeros.size(), 2u);
+  EXPECT_EQ(flat.times.size(), 2u);
   return measured(strprintf("%d cells, %g to %g: frequency over theory", n, below, above),
-                  PI / (zeros.back() - zeros.front()) / w);
+                  flat.frequency() / w);
 }
 
 /** Two layers between plates that are 1 apart, one of which is as thick as so many of n cells. */

@@ -7,7 +7,7 @@
 
 // Elastic solids in fix mpm/incompressible: waves of shear, a layer under a flow, disks.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 #include "group.h"
 
@@ -165,13 +165,12 @@ SERIAL_TEST(FlowSolids, WavesOfShear)
                     "0.01*sin(2*PI*x)\nvelocity all set NULL v_v NULL\ntimestep %.17g\n",
                     h, dt));
       // the amplitude of sin(2 pi x), and when it is zero
-      double last = 1.0;
-      std::vector<double> zeros;
+      Crossings crossings;
+      const auto &zeros = crossings.times;
       run.each_step([&](double **) {
         double now = 0.0;
         for (int i = 0; i < run.n(); i++) now += run.v()[i][1] * std::sin(2 * PI * run.x()[i][0]);
-        if (now * last < 0.0) zeros.push_back(run.time() - dt * now / (now - last));
-        last = now;
+        crossings.add(run.time(), now);
       });
       const double kinetic = run.sums().kinetic;
       run.commands(strprintf("run %d\n", 6 * n));

@@ -6,7 +6,7 @@
 
 // Surface tension and contact angles of fix mpm/incompressible: drops, capillary waves, menisci.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 using namespace MPM_TEST;
 
@@ -38,16 +38,6 @@ double pressure_inside(Scene &run)
     n += 1.0;
   }
   return sum / n;
-}
-
-/** Times at which m passes zero. */
-std::vector<double> zeros_of(const std::vector<double> &t, const std::vector<double> &m)
-{
-  std::vector<double> zeros;
-  for (std::size_t k = 1; k < m.size(); k++)
-    if (m[k - 1] * m[k] < 0.0)
-      zeros.push_back(t[k - 1] + (t[k] - t[k - 1]) * m[k - 1] / (m[k - 1] - m[k]));
-  return zeros;
 }
 
 /** Extrema, by time and value. */

@@ -7,6 +7,7 @@
 // Fix mpm/refine: one body on lattices of different spacing.
 
 #include "refine/refine_testing.h"
+#include "wave_testing.h"
 
 using namespace MPM_TEST;
 
@@ -385,20 +386,17 @@ SERIAL_TEST(Axisymmetric, CylinderSwings)
     run.set_velocity([=](const double *r, double *v) {
       v[0] = 1e-5 * std::cyl_bessel_j(1, low * r[0]);
     });
-    double last = 0.0;
-    std::vector<double> zeros;
+    Crossings crossings;
     run.each_step([&](double **) {
       double sum = 0.0;
       for (int i = 0; i < run.n(); i++) sum += run.mass()[i] * run.x()[i][0] * run.v()[i][0];
-      if (last != 0.0 && (sum < 0.0) != (last < 0.0))
-        zeros.push_back(run.time() - dt * sum / (sum - last));
-      last = sum;
+      crossings.add(run.time(), sum);
     });
     run.commands(strprintf("timestep %.17g\nrun %d\n", dt, (int) (4.8 * PI / (low * c) / dt)));
-    EXPECT_GE(zeros.size(), 4u);
+    EXPECT_GE(crossings.times.size(), 4u);
     return measured(strprintf("%s: error of the frequency, %d cells, fine %s", options.c_str(), n,
                               core ? "core" : "skin"),
-                    PI * (zeros.size() - 1.0) / (zeros.back() - zeros.front()) / (low * c) - 1.0);
+                    crossings.frequency() / (low * c) - 1.0);
   };
   for (const bool core : {true, false}) {
     for (const char *options : {"", "frame total"})

@@ -6,7 +6,7 @@
 
 // Bars in closed form: in 2d (plane strain) with Poisson's ratio 0, one cell across, periodic.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 using namespace MPM_TEST;
 
@@ -37,26 +37,6 @@ static void run_steps(Scene &run, double dt, int n)
 {
   run.commands(strprintf("timestep %.17g\nrun %d\n", dt, n));
 }
-
-/** Times at which a signal changes its sign. */
-class Crossings {
-  double t_old = 0.0, s_old = 0.0;
-
- public:
-  std::vector<double> times;
-  void add(double t, double s)
-  {
-    if (s * s_old < 0.0) times.push_back(t_old + (t - t_old) * s_old / (s_old - s));
-    t_old = t;
-    s_old = s;
-  }
-  /** Mean of full periods: crossings of one direction. */
-  double period() const
-  {
-    const int n = ((int) times.size() - 1) / 2;
-    return n > 0 ? (times[2 * n] - times[0]) / n : 0.0;
-  }
-};
 
 // A1: one point in one cell, node 1 fixed: the time integrator alone. v = 0.1 cos(2 pi t) exactly,
 // since the log strain e of the law `linear' obeys e' = v, v' = -E e (N2/m2 = 1/M cancels).
@@ -373,7 +353,6 @@ struct Impact {
   bool equal;
 };
 
-//
 // Linear functions: a point that goes through a face of a cell changes the forces on the nodes by
 // up to half of its stress (A4), so that 2 % cannot be asked where bars move by cells. Unequal bars
 // do, by 1.5 cells; at a tenth of the velocities, with the same answer, no point crosses a face.

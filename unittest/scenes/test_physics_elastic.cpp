@@ -6,7 +6,7 @@
 
 // Large elastic deformation, and classic problems of solids: shear, buckling, a silo.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 using namespace MPM_TEST;
 
@@ -355,13 +355,10 @@ static std::vector<std::array<double, 2>> sway(double share, double until)
 
 static double half_period(const std::vector<std::array<double, 2>> &path)
 {
-  std::vector<double> zeros;
-  for (std::size_t k = 2; k < path.size(); k++) {
-    const auto &a = path[k - 1], &b = path[k];
-    if (a[1] * b[1] < 0.0) zeros.push_back(a[0] - a[1] * (b[0] - a[0]) / (b[1] - a[1]));
-  }
-  EXPECT_GE(zeros.size(), 2u);
-  return zeros.size() < 2 ? 0.0 : zeros[1] - zeros[0];
+  Crossings zeros;
+  for (std::size_t k = 1; k < path.size(); k++) zeros.add(path[k][0], path[k][1]);
+  EXPECT_GE(zeros.times.size(), 2u);
+  return zeros.times.size() < 2 ? 0.0 : zeros.times[1] - zeros.times[0];
 }
 
 TEST(Column, BucklesUnderItsWeight)
