@@ -438,8 +438,7 @@ SERIAL_TEST(Bed, IsPassedForEver)
                  "create_atoms 2 single 1.3 2.2 0\nset type 2 diameter 0.1 density/disc 1.0\n") +
             flow("", "0.0 drag none") +
             "velocity water set 1.0 0 0 units box\natom_modify first grains\n"
-            "neigh_modify include grains\ncomm_modify group grains\ntimestep 0.5\nrun 60\n");
-  run.commands("run 1\n");
+            "neigh_modify include grains\ncomm_modify group grains\ntimestep 0.5\nrun 60\nrun 1\n");
   EXPECT_NEAR(measured("displacement", run.evaluate("xcm(water,x)")), 2.0 + 30.5, 1e-6);
 }
 

@@ -411,8 +411,7 @@ TEST(Shut, IsTold)
     const double fast = std::string(law).find("u-v-p") == std::string::npos;
     Scene run(pressed(law, 2.0));
     Water water(run);
-    run.commands("compute n all mpm/atom porosity\n");
-    run.commands("fix dt all mpm/dt 0.3 until 0.05\nrun 100000\n");
+    run.commands("compute n all mpm/atom porosity\nfix dt all mpm/dt 0.3 until 0.05\nrun 100000\n");
     EXPECT_EQ(over_ranks(run.lmp->error->get_numwarn(), MPI_SUM), fast) << law;
     const double before = water.mass(), came = run.fix("water")->compute_scalar();
     run.commands("fix dt all mpm/dt 0.3 until 0.225\nrun 100000\n");

@@ -30,8 +30,7 @@ SERIAL_TEST(Energy, OfWaterThatLeaves)
   for (const std::string formulation : {"formulation u-p", "formulation u-v-p"}) {
     const std::string scene = jump("", formulation) + "fix dt all mpm/dt 0.5\n";
     EXPECT_EQ(times_said(scene + "run 1000\n", "Numerical errors"), 0) << formulation;
-    Scene run(scene + "compute e all mpm/energy\nvariable came equal c_e[16]\n");
-    run.commands("run 300\n");
+    Scene run(scene + "compute e all mpm/energy\nvariable came equal c_e[16]\nrun 300\n");
     const double volume = run.fix("water")->compute_scalar();
     EXPECT_LT(volume, 0.0);
     EXPECT_NEAR(measured(formulation + ": energy over that of the pressure outside",

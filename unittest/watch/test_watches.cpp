@@ -356,8 +356,7 @@ PARAMETER_TEST(EnergyWatchWork, IsNoGain, Work, ValuesIn(works))
             body("block 8 12 0 4 0 4", "density 2 neohookean 300 0.3", "1.0 gain error 0.02") +
             "variable t equal step*dt\nvariable speed equal 0.3*v_t\n"
             "variable way equal 0.15*v_t*v_t\nvariable centre equal v_way+6\n"
-            "region still block INF 9.1 INF INF INF INF\n");
-  run.commands("timestep 0.01\n");
+            "region still block INF 9.1 INF INF INF INF\ntimestep 0.01\n");
   EXPECT_EQ(run.error(replaced(GetParam().text, "GRIP", grip) + "run 1000\n"), "");
   double moving = 0.0;
   for (int i = 0; i < run.n(); i++) moving += run.v()[i][0];
