@@ -56,9 +56,8 @@ double ergun(double d, double w, double mu, double solid)
   return solid * (150.0 * mu * solid / (d * d) + 1.75 * w / d) * w / cube;
 }
 
-/** Velocity of viscous fluid at a point force F along z which has moved with the velocity v in a
- *  periodic box for a time t (C.W. Oseen), where quadratic splines along z and hats along x and y
- *  spread the force and interpolate the velocity. */
+/** Velocity of viscous fluid at a point force F along z that moves with v in a periodic box for a
+ *  time t (C.W. Oseen), spread by quadratic splines along z and hats along x and y. */
 double dragged_along(double F, double v, double mu, double t, const double *box)
 {
   const auto sinc = [](double k) {

@@ -204,9 +204,8 @@ TEST(Regions, RanksAndRestart)
   }
 }
 
-// A container that is moved pushes on its water with the force that accelerates it, in each step,
-// wherever walls are in their cells: full, and with a surface that is inclined by the acceleration
-// over the weight; at a constant speed with no force
+// A container that is moved pushes on its water with the force that accelerates it, wherever walls
+// are in their cells: full, and with an inclined surface
 SERIAL_TEST(Regions, MovedTank)
 {
   struct Case {

@@ -38,8 +38,7 @@ double error_of_cylinders(int n)
 }
 
 /** Slow flow by a weight through a square array of cylinders, which fill 0.05: mean velocity over
- *  that of A.S. Sangani, A. Acrivos, Int. J. Multiphase Flow 8 (1982) 193, by whom the drag on one
- *  is 15.56 times viscosity and mean velocity. */
+ *  that of A.S. Sangani, A. Acrivos, Int. J. Multiphase Flow 8 (1982) 193, drag 15.56 mu u. */
 double flow_through_cylinders(int n)
 {
   constexpr double filled = 0.05, speed = 0.01;

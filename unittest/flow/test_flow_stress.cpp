@@ -109,8 +109,7 @@ SERIAL_TEST(Vortices, DecayWithLongSteps)
 }
 
 // Trouton: a sheet resists its stretching with 4 mu. Its velocity decays with 4 nu k^2, however
-// long steps are against the time h^2/nu and that of its thickness. Without the pressure that
-// belongs to viscous stress it would be 2 mu
+// long steps are. Without the pressure that belongs to viscous stress: 2 mu
 SERIAL_TEST(Sheet, Trouton)
 {
   constexpr double t = 0.2, rate = 4.0 * (PI / 4) * (PI / 4);

@@ -183,8 +183,7 @@ SERIAL_TEST(Tension, BadInput)
 }
 
 /** A drop of radius 1 on a floor, a segment of a disk, with n cells in the radius. It begins as
- *  this segment, or as one half of a disk. The floor is a wall of the box at y = 0, or a region
- *  whose surface has that height and slope angle. */
+ *  this, or as half a disk, on a wall at y = 0 or a region with that height and slope. */
 struct Sessile {
   double angle, n;
   bool is_segment;

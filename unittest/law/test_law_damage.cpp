@@ -183,9 +183,8 @@ Matrix through_failure(double t)
   return {0.03 * c, 0.05 * c, 0, 0.01 * c, -0.002 * s, 0.02 * s, 0, 0, 0.01 * c};
 }
 
-// stored + plastic + fracture = stress power through failure, whatever bears load afterwards, to
-// second order. The coefficient depends on where the moments of failure and of change from tension
-// to compression lie in their steps, hence a bound and no rate.
+// stored + plastic + fracture = stress power through failure, to second order, with a coefficient
+// that depends on where failure lies in its step, hence a bound.
 TEST(DamageEnergy, BalanceThroughFailure)
 {
   const std::string soft = STEEL + "damage johnson/cook 0.004 0.002 -1.5 soften from 0.2 ";

@@ -438,9 +438,8 @@ TEST(Hyperelastic, Extremes)
   }
 }
 
-/** Largest eigenvalue of the acoustic tensors over many normals, by central differences of the
- *  first Piola-Kirchhoff stress: density_0 c^2 m = dP(m x N) N for the reference normal N = F^T n,
- *  which all waves, longitudinal and transverse, obey. */
+/** Largest eigenvalue of the acoustic tensors over many normals, by central differences: density_0
+ *  c^2 m = dP(m x N) N for the reference normal N = F^T n. */
 double fastest_wave(const MaterialPoint &start)
 {
   const double d = 1e-6;

@@ -176,9 +176,8 @@ struct Cloth {
   }
 };
 
-// a surface with any normal, turned further in space: the stress of the law in its own axes,
-// turned; also of wood, whose thickness changes such that nothing acts across. The deformation
-// gradient that is kept is that of space, not of the axes
+// a surface with any normal, turned in space: the stress of the law in its own axes, turned; also
+// of wood. The deformation gradient that is kept is that of space, not of the axes
 TEST(Woven, AxesLieOnSurfaces)
 {
   const Matrix turn = rotation(AXIS, 0.9), later = rotation({0.6, -0.8, 0.0}, 1.7);

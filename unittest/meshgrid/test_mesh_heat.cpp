@@ -188,9 +188,8 @@ TEST(MeshHeat, RanksAndRestart)
   EXPECT_EQ(run.whole.fix("h")->compute_scalar(), run.again.fix("h")->compute_scalar());
 }
 
-// Two layers of conductivities 1 and 10, from x = 0.5 or in the middle of the next cells: there was
-// 8 and 4 % too much heat with those of points. Not so with means, also in a stretched body;
-// triangles have an error of first order
+// Two layers of conductivities 1 and 10, from x = 0.5 or in the middle of the next cells: 8 and 4 %
+// too much heat with those of points, not so with means
 SERIAL_TEST(MeshHeat, LayersThatCutCells)
 {
   for (const Kind kind : {QUADS, TRIANGLES})

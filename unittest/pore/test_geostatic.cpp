@@ -83,9 +83,8 @@ SERIAL_TEST(Geostatic, SoilsAndUnits)
   }
 }
 
-// points that go with nodes off the face do not end there, and forces on nodes are then balanced by
-// a stress next to the face that is not the weight above, on any lattice: this is told, and nothing
-// of ground that ends at the face
+// points with nodes off the face do not end there, and a stress next to the face that is not the
+// weight above balances nodes: this is told, but not of ground that ends at the face
 SERIAL_TEST(Geostatic, GapsAreTold)
 {
   for (const int n : {10, 20})

@@ -662,9 +662,8 @@ double velocity_of_soil(Scene &run, double from, double to)
   return (height() - first) / (stop - start);
 }
 
-// A plug of soil in a closed column of water sinks, or rises if its grains are light, as fast as
-// the drag of the water that it pushes aside allows: the superficial velocity of this is that of
-// the plug, k (rho_s/rho_f - 1) (1 - n).
+// A plug of soil in a closed column of water sinks or rises as fast as the drag of the water that
+// it pushes aside allows, of the plug's velocity, k (rho_s/rho_f - 1) (1 - n).
 SERIAL_TEST(Plug, SinksAsTheWaterLetsIt)
 {
   const double k = 5.0e-3;

@@ -33,9 +33,8 @@ SERIAL_TEST(Consolidation, Terzaghi)
   }
 }
 
-// Terzaghi's equation has no inertia and small strains: with soil and load that are light,
-// pressures are of an order above one. (With 2 g/cm^3 the inertia of the column shifts them by 0.05
-// % of the load, which no lattice takes away)
+// Terzaghi's equation has no inertia and small strains: pressures of light soil and load are of an
+// order above one. (With 2 g/cm^3 inertia shifts them by 0.05 % of the load)
 SERIAL_TEST(Consolidation, Converges)
 {
   struct Surface {
@@ -320,8 +319,7 @@ SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
 }
 
 // Sand without cohesion lifts as a plug above the critical gradient, 0.99, as fast as water comes
-// in below it: by the head above the critical one over half a node spacing, where the lowest soil
-// is loose and as permeable as before
+// in: by the head above the critical one over half a node spacing
 SERIAL_TEST(Flow, LiftsAboveTheCriticalGradient)
 {
   const auto rate = [](double i) {

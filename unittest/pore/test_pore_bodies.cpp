@@ -129,9 +129,8 @@ SERIAL_TEST(Contact, WaterPartsBodies)
     }
 }
 
-// two layers with water of different pressure: between them is the mean of both, less than which no
-// node bears. In the row of nodes below the interface, which has an eighth of its area, the lower
-// one follows the pressure of the upper one
+// two layers with water of different pressure: between them is the mean of both, and no node bears
+// less. Below the interface nodes have an eighth of its area
 SERIAL_TEST(Contact, OfTwoSoils)
 {
   Scene run(replaced(replaced(on_body("coulomb 0.5", 0.0, 0.0), "density 2500", "density 1990"),

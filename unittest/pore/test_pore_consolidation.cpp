@@ -4,9 +4,8 @@
 // labels: physics
 // timeout: 600
 
-// Fix mpm/pore: consolidation with solutions, in which what the soil does changes the pressure of
-// the water elsewhere. The soil has modulus, density, and size 1, and a permeability with which
-// consolidation is slow next to waves.
+// Fix mpm/pore: consolidation in which soil changes pressures elsewhere. The soil has modulus,
+// density, and size 1, and consolidates slowly next to waves.
 
 #include "pore/pore_testing.h"
 

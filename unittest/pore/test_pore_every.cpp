@@ -43,9 +43,8 @@ SERIAL_TEST(Undrained, PressureIsEven)
       EXPECT_LT(scatter_of_pressure(Kf, k, "every 20"), 0.01);
 }
 
-// Points that are a node spacing apart have pressures of their own that are stiffer than those of
-// nodes: waits are shorter then, or noise grows without end. So with points that are close along
-// one axis alone, whose volume is that of close points
+// Points a node spacing apart have pressures stiffer than those of nodes: waits are shorter then,
+// or noise grows; so with points that are close along one axis alone
 SERIAL_TEST(Waits, AreShortWithFewPoints)
 {
   const struct {

@@ -240,9 +240,8 @@ SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
   }
 }
 
-// Soil and water together keep their momentum: two blocks collide, and water flows in them. What
-// water that goes from point to point makes of it, which takes the velocity of where it comes to,
-// is not part of the equations, and is counted here
+// Soil and water together keep their momentum: two blocks collide. Water that goes from point to
+// point takes the velocity of where it comes to, and is counted here
 SERIAL_TEST(Momentum, IsKept)
 {
   Scene run(blocks("initial v_p " + MOVES) + "compute w all mpm/atom flow_x flow_y\n");

@@ -364,9 +364,8 @@ SERIAL_TEST(Axisymmetric, TubeUnderPressure)
   }
 }
 
-// A cylinder that swings around its axis, with a finer core and with a finer skin, has the exact
-// frequency: order 2 with the gradients of the functions. With those of affine terms, forces at the
-// rim of a lattice have an error of their own, of order 1
+// A cylinder that swings around its axis, with a finer core or skin, has the exact frequency: order
+// 2 with gradients of functions; affine terms have errors of order 1 at the rim
 SERIAL_TEST(Axisymmetric, CylinderSwings)
 {
   const double nu = 0.3, c = sqrt((1 - nu) / ((1 + nu) * (1 - 2 * nu)));

@@ -213,8 +213,7 @@ std::string pile(const std::vector<Part> &parts, const std::string &options,
 }
 
 // A block rests on another one: they press on each other with its weight, and the stress is that of
-// the weight above, as on one lattice. With affine terms in place of gradients, forces at the rim
-// of a lattice are not those of the functions
+// the weight above. With affine terms, forces at the rim are not those of the functions
 SERIAL_TEST(Rest, OnEachOther)
 {
   LONG_CASE();

@@ -14,8 +14,7 @@
 using namespace MPM_TEST;
 
 // nodes with next to no mass: a slab with the pressure p = 0.01 K is let go; acoustics gives points
-// the speed p/(rho c) at its faces. They are anywhere in their cell, one layer of points at the
-// distance shift - 1/4 from the face of a cell.
+// at its faces, shift - 1/4 from the face of a cell, the speed p/(rho c).
 static double release(const std::string &options, double shift)
 {
   Scene run;

@@ -242,9 +242,8 @@ struct ShapeOrder {
   friend void PrintTo(const ShapeOrder &c, std::ostream *out) { *out << c.options; }
 };
 
-// Crossing: linear functions do not converge (-0.69 by another code, whose other transfers are not
-// known); quadratic functions and gimp approach the error at which they stall, 1.86 and 1.87 by
-// other codes: the table above and FixedGimp
+// Crossing: linear functions do not converge (-0.69 by another code); quadratic ones and gimp
+// approach the error at which they stall, 1.86 and 1.87 by other codes: see FixedGimp
 static const ShapeOrder shapes[] = {
     {"shape linear", -0.69, 3.0 / 16.0},
     {"shape quadratic", 1.86, 1.0 / 4.0},

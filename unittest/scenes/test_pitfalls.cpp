@@ -443,8 +443,7 @@ PARAMETER_TEST(Turn, InflatesNothing, std::string,
 }
 
 // a tetrahedron with a volume of (1/6) in integers had no mass; sizes of points that do not add up
-// to the body make its mass depend on the variant. Momentum of CPDI was not conserved: that of all
-// variants is measured in test_variants.cpp
+// make the mass depend on the variant. Momentum of CPDI: test_variants.cpp
 TEST(Pitfall, MassIsThatOfTheBodyInEveryVariant)
 {
   for (const char *options : {"shape linear", "shape quadratic", "shape cubic", "shape gimp",

@@ -203,9 +203,8 @@ TEST(CellMultigrid, WaterAtRest)
   }
 }
 
-// One pool without a surface between two thin walls, next to one with a surface: they share larger
-// cells, and no water. 30 iterations to 1e-12 are 1.5 times what the 14 by cosine transforms to
-// 1e-8, as above, come to; 13 are measured.
+// A pool without a surface between thin walls, next to one with a surface: they share larger cells,
+// and no water. 30 iterations to 1e-12 are 1.5 times the 14 by cosine transforms to 1e-8.
 TEST(CellMultigrid, Pools)
 {
   CellScene two{2, 30};

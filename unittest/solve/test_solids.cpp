@@ -266,9 +266,8 @@ TEST(SplineMultigrid, FreeBody)
   EXPECT_TRUE(report.converged()) << report.describe();
 }
 
-// Systems of few unknowns are factorized as a whole: a solution takes one iteration and what the
-// shift of the diagonal costs, with constraints along slopes, masses, periodic axes, cells that are
-// cut anywhere, and ratios of stiffness.
+// Systems of few unknowns are factorized as a whole: one iteration and what the shift of the
+// diagonal costs, with slopes, masses, periodic axes, cut cells, and ratios of stiffness.
 TEST(SplineMultigrid, FactorsOfAll)
 {
   auto heavy = slope(12), patches = block(2, 16), ring = block(2, 13), cubic = block(2, 12);

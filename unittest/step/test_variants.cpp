@@ -4,9 +4,8 @@
 // labels: physics
 // timeout: 900
 
-// Properties that all variants share, or that tell them apart: conservation, noise at rest, what
-// the place of a body on the lattice changes, stretch at which a body comes apart, equivalences.
-// A new variant is a line in the lists.
+// Properties that variants share, or that tell them apart: conservation, noise, places on the
+// lattice, stretch at which a body comes apart. A new variant is a line in the lists.
 
 #include "mpm_lammps.h"
 

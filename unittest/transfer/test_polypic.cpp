@@ -97,8 +97,7 @@ TEST(Polypic, RoundTrip)
 }
 
 // momentum and angular momentum (with that of the affine fields) in elastic motion; with musl and
-// usavg, points move with other velocities than they have: the manual promises 1e-4 of angular
-// momentum, and what it changes is known
+// usavg, points move with other velocities: 1e-4 of angular momentum is promised
 
 TEST(Polypic, Conservation)
 {

@@ -906,8 +906,7 @@ TEST(Rebound, FlipKeepsTheEnergy)
 }
 
 // FLIP: points lose the velocity with which they arrive at a wall for good. With all of the old
-// velocity constrained, 3/4 of the energy of this fall were left when the water should have calmed
-// down, and it splashed higher than it came from.
+// velocity constrained, 3/4 of the energy of this fall were left, and it splashed higher.
 TEST(Arrival, WaterFallsAndCalmsDown)
 {
   if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";

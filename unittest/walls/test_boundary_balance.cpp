@@ -104,8 +104,7 @@ const Motion motions[] = {
 };
 
 // Force and torque are the changes of momentum and angular momentum, and work is that of the force
-// along the way of the wall: nothing of this comes from the sums of the fix over nodes. The ledger
-// has the same work, and nothing is left over in it
+// along the way of the wall, not the sums of the fix over nodes. The ledger has the same work
 PARAMETER_TEST(Balance, OfMovingWalls, Motion, ValuesIn(motions))
 {
   const auto &c = GetParam();

@@ -5,9 +5,8 @@
 // mpi: 1 2
 // timeout: 600
 
-// Regions as walls where their other faces are near: plates that are thinner than what nodes see,
-// narrow and short tools; the warning where nodes cannot tell the shape; unions, intersections, and
-// cones with a sharp end; walls that move.
+// Regions as walls where their other faces are near: thin plates, narrow and short tools; the
+// warning where nodes cannot tell the shape; unions, intersections, and cones; walls that move.
 
 #include "mpm_lammps.h"
 

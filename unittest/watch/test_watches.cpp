@@ -251,9 +251,8 @@ void reverse(LAMMPS &lmp)
   for (auto *field : MPMField::all(&lmp)) field->map->valid = false;
 }
 
-/** Energies that the summaries of a wheel tell, whose left half goes up and whose right half goes
- *  down under gravity: their work is as much as its energy within 250 steps. Of 8448 points one in
- *  16 is looked at in a step. */
+/** Energies that the summaries of a wheel tell, whose halves go up and down under gravity: work
+ *  like its energy in 250 steps. Of 8448 points one in 16 is looked at in a step. */
 std::vector<double> told_of_wheel(const std::string &more, bool reversed)
 {
   const ScratchFile file("log");
