@@ -50,6 +50,36 @@ std::vector<Sample> expandable()
 
 constexpr const char *NO_HEAT = "adiabatic 1e30 300 0";    // a point whose own heat is nothing
 
+/** Expects the power of the stress to be what laws store and dissipate, while warm(p, t, n) changes
+ *  the temperature in a motion of n steps: of second order, unless it is within this part of the
+ *  largest power. Returns the part of it that the thermal strain has taken. */
+template <class Warm>
+double expect_balance(const Material &material, double within, const Warm &warm)
+{
+  double scale = 0.0, taken = 0.0;
+  const auto error = refined(250, [&](int n) {
+    MaterialPoint p(material, 1, 0.01);
+    double worst = 0.0;
+    const double start = p.stored_energy();
+    for (int i = 0; i < n; i++) {
+      const double t = (i + 0.5) / n;
+      warm(p, t, n);
+      steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
+      const double energy = p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS] +
+          p.work[FRACTURE] + p.work[THERMOELASTIC];
+      worst = std::max(worst, std::fabs(energy - p.power));
+      scale = std::max(scale, std::fabs(p.power));
+      taken = std::max(taken, std::fabs(p.work[THERMOELASTIC]));
+    }
+    return worst;
+  });
+  EXPECT_LT(error[2], 1e-2 * scale);
+  if (!(error[2] <= within * scale))
+    EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
+        << error[0] / scale << " " << error[2] / scale;
+  return taken / scale;
+}
+
 // with an expansion, a law has the stress, speed, and energy that it has without it at F/theta
 TEST(Expansion, IsTakenOutOfTheMotionOfAnyLaw)
 {
@@ -146,26 +176,10 @@ TEST(Expansion, EnergyBalance)
     SCOPED_TRACE(law);
     const auto material =
         make(joined("density 1000 ", law, " thermal ", NO_HEAT, " expansion 1e-3"));
-    double scale = 0.0, taken = 0.0;
-    const auto error = refined(250, [&](int n) {
-      MaterialPoint p(*material, 1, 0.01);
-      double worst = 0.0;
-      for (int i = 0; i < n; i++) {
-        const double t = (i + 0.5) / n;
-        warm_to(p, 300 + 100 * std::sin(5 * t));
-        steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
-        const double energy = p.stored_energy() + p.work[PLASTIC] + p.work[VISCOUS] +
-            p.work[FRACTURE] + p.work[THERMOELASTIC];
-        worst = std::max(worst, std::fabs(energy - p.power));
-        scale = std::max(scale, std::fabs(p.power));
-        taken = std::max(taken, std::fabs(p.work[THERMOELASTIC]));
-      }
-      return worst;
+    const double taken = expect_balance(*material, 0.0, [](MaterialPoint &p, double t, int) {
+      warm_to(p, 300 + 100 * std::sin(5 * t));
     });
-    EXPECT_LT(error[2], 1e-2 * scale);
-    EXPECT_GT(taken, 0.05 * scale);
-    EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
-        << error[0] / scale << " " << error[2] / scale;
+    EXPECT_GT(taken, 0.05);
   }
 }
 
@@ -398,26 +412,9 @@ TEST(Conducted, EnergyBalance)
                                       gas ? " viscosity newtonian 1" : " strength j2 26e9 1e8",
                                       " thermal conducting 900 300 50 0.9",
                                       gas ? "" : " vary SIGMAY linear -1e-3 300 300 900"));
-    double scale = 0.0;
-    const auto error = refined(250, [&](int n) {
-      MaterialPoint p(*material, 1, 0.01);
-      double worst = 0.0;
-      const double start = p.stored_energy();
-      for (int i = 0; i < n; i++) {
-        const double t = (i + 0.5) / n;
-        warm_to(p, value(p, "temperature") + 500 * std::cos(5 * t) / n);
-        steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
-        const double energy =
-            p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS] + p.work[THERMOELASTIC];
-        worst = std::max(worst, std::fabs(energy - p.power));
-        scale = std::max(scale, std::fabs(p.power));
-      }
-      return worst;
+    expect_balance(*material, 1e-6, [](MaterialPoint &p, double t, int n) {
+      warm_to(p, value(p, "temperature") + 500 * std::cos(5 * t) / n);
     });
-    EXPECT_LT(error[2], 1e-2 * scale);
-    if (error[2] > 1e-6 * scale)
-      EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
-          << error[0] / scale << " " << error[2] / scale;
   }
 }
 
@@ -479,24 +476,9 @@ TEST(Vary, EnergyBalance)
     const auto material = make(joined("density 1000 ", law, " thermal ", NO_HEAT, " vary ",
                                       fluid ? "strength.G" : "E", " table 300 1 400 0.5",
                                       fluid ? " vary SIGMAY linear -0.004 300 300 400" : ""));
-    double scale = 0.0;
-    const auto error = refined(250, [&](int n) {
-      MaterialPoint p(*material, 1, 0.01);
-      double worst = 0.0;
-      for (int i = 0; i < n; i++) {
-        const double t = (i + 0.5) / n;
-        warm_to(p, 350 - 50 * std::cos(5 * t));
-        steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
-        const double energy = p.stored_energy() + p.work[PLASTIC] + p.work[THERMOELASTIC];
-        worst = std::max(worst, std::fabs(energy - p.power));
-        scale = std::max(scale, std::fabs(p.power));
-      }
-      return worst;
+    expect_balance(*material, 1e-5, [](MaterialPoint &p, double t, int) {
+      warm_to(p, 350 - 50 * std::cos(5 * t));
     });
-    EXPECT_LT(error[2], 1e-2 * scale);
-    if (error[2] > 1e-5 * scale)
-      EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
-          << error[0] / scale << " " << error[2] / scale;
   }
   Point p(joined("density 1000 linear 1e6 0.3 thermal ", NO_HEAT, " vary E table 300 1 400 0.5"));
   move_to(p, uniaxial_stretch(1.01));

@@ -99,6 +99,32 @@ inline double difference_from_terzaghi(Scene &run, Water &water, double p0, doub
   return std::sqrt(sum);
 }
 
+/** Rms difference of pressures over the load from Terzaghi's at T = 0.2 in a column of this width
+ *  along z, whose surface is within a cell. Kf, more: modulus and options of the water. */
+inline double terzaghi_in_space(const char *shape, double width, double Kf, const std::string &more)
+{
+  const double c = 1e-3 / 9810.0 / (1.0 / MODULUS + 0.4 / Kf);
+  Scene run(
+      space("si", "p p f", strprintf("0 %g 0 %g 0 1.25", width, width), 1, 0.03) +
+      strprintf("region soil block 0 %g 0 %g 0 1\ncreate_points 1 region soil spacing 0.05\n"
+                "fix grid all mpm 0.1 shape %s origin 0 0 0.03\n",
+                width, width, shape) +
+      "fix m all mpm/material density 2002 linear 1e7 0.3\n"
+      "fix floor all mpm/boundary zlo slip\n" +
+      strprintf("fix water all mpm/pore %g 1000 9810 soil m 0.4 constant 1e-3 free pressure 0 ",
+                Kf) +
+      more +
+      "\nregion top block INF INF INF INF 0.95 INF\ngroup top region top\n"
+      "variable ramp equal (time<0.01)*time/0.01+(time>=0.01)\n"
+      "variable load equal -1e4*0.5*(1-cos(PI*v_ramp))*lx*ly/count(top)\n"
+      "fix load top addforce 0 0 v_load\n");
+  Water water(run);
+  run_to(run, 0.2 / c + 0.005);
+  return measured(strprintf("%s, rms", shape),
+                  difference_from_terzaghi(run, water, LOAD / (1.0 + MODULUS * 0.4 / Kf), 0.2, 2) /
+                      LOAD);
+}
+
 /** Scatter of the pressure in a column of 20 cells, as a part of the load: the standard deviation
  *  from Terzaghi's solution below the uppermost three cells after 60 ms. The load grows in 30 ms,
  *  too short for flow. Kf, k: bulk modulus and conductivity; options: of mpm/pore. */

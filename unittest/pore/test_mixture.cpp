@@ -13,6 +13,18 @@
 
 using namespace MPM_TEST;
 
+/** Mean height of the points of type 1. */
+double height_of_soil(Scene &run)
+{
+  double sum = 0.0, number = 0.0;
+  for (const auto &s : run.gather())
+    if (s.type == 1) {
+      sum += s.x[1];
+      number++;
+    }
+  return sum / number;
+}
+
 constexpr double G = 9.81, POROSITY = 0.4;
 constexpr double GRAINS = 2650.0, WATER = 1000.0, DRY = (1.0 - POROSITY) * GRAINS;
 
@@ -503,16 +515,7 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
       if (type == 1) weight -= f[j][1];
     }
   });
-  const auto bed = [&] {
-    double sum = 0.0, number = 0.0;
-    for (const auto &s : run.gather())
-      if (s.type == 1) {
-        sum += s.x[1];
-        number++;
-      }
-    return sum / number;
-  };
-  const double before = bed();
+  const double before = height_of_soil(run);
   run.commands(strprintf("variable t equal time\nfix end all halt 1 v_t > %g error continue\n"
                          "run 100000\nunfix end\n",
                          stiff ? 1.5 : 1.0));
@@ -551,7 +554,7 @@ PARAMETER_TEST(Seepage, LiftsTheBedAtTheCriticalGradient, Flow,
         of_cells[cell] += s.stress[1] / (8 * times);
     }
   }
-  const double moved = measured("moved", bed() - before);
+  const double moved = measured("moved", height_of_soil(run) - before);
   if (i > 0.99) {
     EXPECT_GT(moved, 0.02);
     return;
@@ -640,26 +643,13 @@ Column plug(double k, const std::string &options)
 /** Mean velocity of the soil up to the end, from a time on. */
 double velocity_of_soil(Scene &run, double from, double to)
 {
-  const auto height = [&]() {
-    double y = 0.0;
-    int n = 0;
-    for (const auto &s : run.gather())
-      if (s.type == 1) {
-        y += s.x[1];
-        n++;
-      }
-    return y / n;
-  };
   run.commands(strprintf(
       "fix end all halt 1 v_t > %.17g error continue message no\nrun 1000000\nunfix end\n", from));
-  const double first = height(),
-               start = run.lmp->update->atime +
-      (run.lmp->update->ntimestep - run.lmp->update->atimestep) * run.lmp->update->dt;
+  const double first = height_of_soil(run), start = run.time();
   run.commands(
       strprintf("fix end all halt 1 v_t > %.17g error continue message no\nrun 1000000\n", to));
-  const double stop = run.lmp->update->atime +
-      (run.lmp->update->ntimestep - run.lmp->update->atimestep) * run.lmp->update->dt;
-  return (height() - first) / (stop - start);
+  const double stop = run.time();
+  return (height_of_soil(run) - first) / (stop - start);
 }
 
 // A plug of soil in a closed column of water sinks or rises as fast as the drag of the water that

@@ -17,90 +17,59 @@ using namespace MPM_TEST;
  *  friction, or by its torque about an axis along z through a point. */
 enum Work { TRANSLATES, RUBS, TURNS, OTHER };
 
+using Vector = std::array<double, 3>;
+constexpr Vector GIVEN = {0.4, 0.1, -0.2}, ALONG_X = {0.4, 0, 0}, MOVED = {0.4, 0, -0.2}, NONE = {};
+/** Angular velocity about an axis along z, and the place of this axis. */
+struct Turn {
+  double rate = 0.0, o[2] = {0, 0};
+};
+constexpr Turn SLOWLY = {0.1, {0, 3}}, WITH_REGION = {0.3, {1, 3}};
+
+/** walls: VELOCITY and ROTATE are the options of GIVEN and SLOWLY. V, turn: of the wall w; others are
+ *  at rest. */
 struct Motion {
   const char *name, *options, *walls;
   Work work;
-  double V[3];             ///< velocity of the wall w; the others are at rest
-  double rate = 0.0;       ///< its angular velocity about an axis along z
-  double o[2] = {0, 0};    ///< place of this axis
+  Vector V;
+  Turn turn = {};
   friend void PrintTo(const Motion &m, std::ostream *out) { *out << m.name; }
 };
 
 const Motion motions[] = {
-    {"face", "", "w xlo stick velocity 0.4 0.1 -0.2", TRANSLATES, {0.4, 0.1, -0.2}},
-    {"components", "", "w xlo stick velocity 0.4 NULL NULL", TRANSLATES, {0.4, 0, 0}},
-    {"linear", "shape linear", "w xlo stick velocity 0.4 0.1 -0.2", TRANSLATES, {0.4, 0.1, -0.2}},
-    {"cubic", "shape cubic", "w xlo stick velocity 0.4 0.1 -0.2", TRANSLATES, {0.4, 0.1, -0.2}},
-    {"slip", "", "w xlo slip velocity 0.4 0.1 -0.2", TRANSLATES, {0.4, 0.1, -0.2}},
-    {"cut",
-     "origin 0.3 0.4 0.2",
-     "w xlo stick velocity 0.4 0.1 -0.2",
-     TRANSLATES,
-     {0.4, 0.1, -0.2}},
-    {"cut-turns",
-     "origin 0.3 0.4 0.2",
-     "w xlo stick rotate 0 3 4 0 0 1 0.1",
-     TURNS,
-     {0, 0, 0},
-     0.1,
-     {0, 3}},
-    {"face-turns", "", "w xlo stick rotate 0 3 4 0 0 1 0.1", TURNS, {0, 0, 0}, 0.1, {0, 3}},
-    {"displaced", "", "w xlo stick displacement v_way NULL NULL", TRANSLATES, {0.4, 0, 0}},
-    {"flip",
-     "transfer flip 1.0",
-     "w xlo stick velocity 0.4 0.1 -0.2",
-     TRANSLATES,
-     {0.4, 0.1, -0.2}},
-    {"musl", "scheme musl", "w xlo stick velocity 0.4 0.1 -0.2", TRANSLATES, {0.4, 0.1, -0.2}},
-    {"total", "frame total", "w xlo stick velocity 0.4 0.1 -0.2", TRANSLATES, {0.4, 0.1, -0.2}},
-    {"total-region",
-     "frame total",
-     "w region held stick displacement v_way NULL NULL",
-     TRANSLATES,
-     {0.4, 0, 0}},
-    {"total-turns",
-     "frame total",
-     "w region held stick rotate 0 3 4 0 0 1 0.1",
-     TURNS,
-     {0, 0, 0},
-     0.1,
-     {0, 3}},
-    {"region", "", "w region grip stick", TRANSLATES, {0.4, 0, -0.2}},
-    {"region-slip", "", "w region ball slip", TRANSLATES, {0.4, 0, -0.2}},
-    {"region-rubs", "", "w region ball slip friction 0.2", RUBS, {0.4, 0, -0.2}},
-    {"region-separate", "", "w region ball separate", TRANSLATES, {0.4, 0, -0.2}},
-    {"region-grates", "", "w region ball separate friction 0.2", RUBS, {0.4, 0, -0.2}},
-    {"region-velocity",
-     "",
-     "w region held stick velocity 0.4 0.1 -0.2",
-     TRANSLATES,
-     {0.4, 0.1, -0.2}},
-    {"region-rotate",
-     "",
-     "w region held stick rotate 0 3 4 0 0 1 0.1",
-     TURNS,
-     {0, 0, 0},
-     0.1,
-     {0, 3}},
-    {"turning", "", "w region paddle stick", TURNS, {0, 0, 0}, 0.3, {1, 3}},
-    {"turning-slip", "", "w region paddle slip", TURNS, {0, 0, 0}, 0.3, {1, 3}},
-    {"turning-separate", "", "w region paddle separate", TURNS, {0, 0, 0}, 0.3, {1, 3}},
-    {"tool", "", "w region tool stick", TRANSLATES, {0.4, 0, -0.2}},
-    {"tool-slip", "", "w region tool slip", TRANSLATES, {0.4, 0, -0.2}},
-    {"tool-separate", "", "w region tool separate friction 0.2", RUBS, {0.4, 0, -0.2}},
-    {"tool-velocity",
-     "",
-     "w region still stick velocity 0.4 0.1 -0.2",
-     TRANSLATES,
-     {0.4, 0.1, -0.2}},
-    {"metal", "", "w xlo stick velocity 0.4 0.1 -0.2", TRANSLATES, {0.4, 0.1, -0.2}},
-    {"metal-region", "", "w region ball slip", TRANSLATES, {0.4, 0, -0.2}},
-    {"grows", "", "w region swelling slip", OTHER, {0, 0, 0}},
-    {"two",
-     "",
-     "w region grip stick\nfix w2 all mpm/boundary ylo slip friction 0.1",
-     TRANSLATES,
-     {0.4, 0, -0.2}},
+    {"face", "", "w xlo stick VELOCITY", TRANSLATES, GIVEN},
+    {"components", "", "w xlo stick velocity 0.4 NULL NULL", TRANSLATES, ALONG_X},
+    {"linear", "shape linear", "w xlo stick VELOCITY", TRANSLATES, GIVEN},
+    {"cubic", "shape cubic", "w xlo stick VELOCITY", TRANSLATES, GIVEN},
+    {"slip", "", "w xlo slip VELOCITY", TRANSLATES, GIVEN},
+    {"cut", "origin 0.3 0.4 0.2", "w xlo stick VELOCITY", TRANSLATES, GIVEN},
+    {"cut-turns", "origin 0.3 0.4 0.2", "w xlo stick ROTATE", TURNS, NONE, SLOWLY},
+    {"face-turns", "", "w xlo stick ROTATE", TURNS, NONE, SLOWLY},
+    {"displaced", "", "w xlo stick displacement v_way NULL NULL", TRANSLATES, ALONG_X},
+    {"flip", "transfer flip 1.0", "w xlo stick VELOCITY", TRANSLATES, GIVEN},
+    {"musl", "scheme musl", "w xlo stick VELOCITY", TRANSLATES, GIVEN},
+    {"total", "frame total", "w xlo stick VELOCITY", TRANSLATES, GIVEN},
+    {"total-region", "frame total", "w region held stick displacement v_way NULL NULL", TRANSLATES,
+     ALONG_X},
+    {"total-turns", "frame total", "w region held stick ROTATE", TURNS, NONE, SLOWLY},
+    {"region", "", "w region grip stick", TRANSLATES, MOVED},
+    {"region-slip", "", "w region ball slip", TRANSLATES, MOVED},
+    {"region-rubs", "", "w region ball slip friction 0.2", RUBS, MOVED},
+    {"region-separate", "", "w region ball separate", TRANSLATES, MOVED},
+    {"region-grates", "", "w region ball separate friction 0.2", RUBS, MOVED},
+    {"region-velocity", "", "w region held stick VELOCITY", TRANSLATES, GIVEN},
+    {"region-rotate", "", "w region held stick ROTATE", TURNS, NONE, SLOWLY},
+    {"turning", "", "w region paddle stick", TURNS, NONE, WITH_REGION},
+    {"turning-slip", "", "w region paddle slip", TURNS, NONE, WITH_REGION},
+    {"turning-separate", "", "w region paddle separate", TURNS, NONE, WITH_REGION},
+    {"tool", "", "w region tool stick", TRANSLATES, MOVED},
+    {"tool-slip", "", "w region tool slip", TRANSLATES, MOVED},
+    {"tool-separate", "", "w region tool separate friction 0.2", RUBS, MOVED},
+    {"tool-velocity", "", "w region still stick VELOCITY", TRANSLATES, GIVEN},
+    {"metal", "", "w xlo stick VELOCITY", TRANSLATES, GIVEN},
+    {"metal-region", "", "w region ball slip", TRANSLATES, MOVED},
+    {"grows", "", "w region swelling slip", OTHER, NONE},
+    {"two", "", "w region grip stick\nfix w2 all mpm/boundary ylo slip friction 0.1", TRANSLATES,
+     MOVED},
 };
 
 // Force and torque are the changes of momentum and angular momentum, and work is that of the force
@@ -123,7 +92,10 @@ PARAMETER_TEST(Balance, OfMovingWalls, Motion, ValuesIn(motions))
             "region paddle block -1 1.6 -1 9 -1 9 rotate v_turn 1 3 4 0 0 1\n"
             "region swelling sphere 0.2 2.2 4.1 v_r\nregion tool mpm/mesh " +
             ball.name + " 1.3 0.2 2.2 4.1 move v_way NULL v_sink\nregion still mpm/mesh " +
-            ball.name + " 1.3 1.2 2.2 4.1\nfix " + replaced(c.walls, "w ", "w all mpm/boundary ") +
+            ball.name + " 1.3 1.2 2.2 4.1\nfix " +
+            replaced(replaced(replaced(c.walls, "w ", "w all mpm/boundary "), "VELOCITY",
+                              "velocity 0.4 0.1 -0.2"),
+                     "ROTATE", "rotate 0 3 4 0 0 1 0.1") +
             "\nvelocity all set -0.3 -0.2 0.1\nvelocity all ramp vx -0.2 0.2 y 0 4 sum yes\n" +
             strprintf("timestep %g\n", dt) +
             "compute e all mpm/energy\nthermo_style custom step c_e\nrun 0\n");
@@ -145,7 +117,7 @@ PARAMETER_TEST(Balance, OfMovingWalls, Motion, ValuesIn(motions))
       work -= dt * f[d] * c.V[d];
       impulse += per_force * std::fabs(f[d]);
     }
-    work -= dt * c.rate * (f[5] - c.o[0] * f[1] + c.o[1] * f[0]);
+    work -= dt * c.turn.rate * (f[5] - c.turn.o[0] * f[1] + c.turn.o[1] * f[0]);
   }
   EXPECT_GT(impulse, 10.0);
   const auto end = momenta();
