@@ -149,7 +149,9 @@ struct Large {
   } laws;
   int cells;
   std::vector<double> times;
-  std::vector<std::array<double, 2>> table;    // settlement, pressure at the base over the load
+  struct Table {
+    std::vector<double> settlement, pressure;    // at the base, over the load
+  } table;
   std::string shape = "quadratic";
 };
 
@@ -250,7 +252,15 @@ const Large::Laws SQUARED = {LINEAR, "squared", hencky, squared},
                   KOZENY = {LINEAR, "kozeny", hencky, kozeny},
                   NH_SQUARED = {NH, "squared", neohooke, squared},
                   NH_CONSTANT = {NH, "constant", neohooke, constant};
-const std::vector<double> ALL = {0.05, 0.1, 0.2, 0.5, 1.0};
+const std::vector<double> ALL = {0.05, 0.1, 0.2, 0.5, 1.0}, EARLY = {0.05, 0.1};
+const Large::Table SQUARED_02 = {{0.043494, 0.061510, 0.086834, 0.129075, 0.150475},
+                                 {0.996783, 0.947665, 0.760760, 0.320468, 0.062965}};
+const Large::Table SQUARED_05 = {{0.092101, 0.130248, 0.183627, 0.264878, 0.293418},
+                                 {0.996659, 0.945235, 0.742959, 0.251277, 0.026521}};
+const Large::Table NEO_HOOKE = {{0.124141, 0.175551, 0.246085, 0.324689, 0.333743},
+                                {0.993235, 0.893167, 0.558205, 0.065147, 0.000985}};
+const Large::Table NEO_HOOKE_SQUARED = {{0.095397, 0.134911, 0.190432, 0.282052, 0.325526},
+                                        {0.997137, 0.953146, 0.780342, 0.334583, 0.058973}};
 
 void PrintTo(const Large &column, std::ostream *out)
 {
@@ -265,58 +275,16 @@ void PrintTo(const Large &column, std::ostream *out)
 // permeability of Kozeny and Carman falls to 1/10 within a cell of the surface
 PARAMETER_TEST(
     LargeStrain, Consolidates, Large,
-    Values(
-        Large{"logarithmic, k J^2, 0.2",
-              0.2,
-              0.5,
-              SQUARED,
-              20,
-              ALL,
-              {{0.043494, 0.996783},
-               {0.061510, 0.947665},
-               {0.086834, 0.760760},
-               {0.129075, 0.320468},
-               {0.150475, 0.062965}}},
-        Large{"logarithmic, k J^2, 0.5",
-              0.5,
-              0.5,
-              SQUARED,
-              20,
-              ALL,
-              {{0.092101, 0.996659},
-               {0.130248, 0.945235},
-               {0.183627, 0.742959},
-               {0.264878, 0.251277},
-               {0.293418, 0.026521}}},
-        Large{"logarithmic, k J^2, 1", 1.0, 0.7, SQUARED, 20, ALL, {}},
-        Large{"logarithmic, constant k, 0.5", 0.5, 0.5, CONSTANT, 20, ALL, {}},
-        Large{"logarithmic, Kozeny and Carman, 0.5, 10 cells", 0.5, 0.5, KOZENY, 10, ALL, {}},
-        Large{"logarithmic, Kozeny and Carman, 0.5", 0.5, 0.5, KOZENY, 20, ALL, {}},
-        Large{
-            "logarithmic, Kozeny and Carman, 0.5, 40 cells", 0.5, 0.5, KOZENY, 40, {0.05, 0.1}, {}},
-        Large{"neo-Hooke, constant k, 0.5",
-              0.5,
-              0.5,
-              NH_CONSTANT,
-              20,
-              ALL,
-              {{0.124141, 0.993235},
-               {0.175551, 0.893167},
-               {0.246085, 0.558205},
-               {0.324689, 0.065147},
-               {0.333743, 0.000985}}},
-        Large{"neo-Hooke, constant k, 0.5, cubic", 0.5, 0.5, NH_CONSTANT, 20, ALL, {}, "cubic"},
-        Large{"neo-Hooke, k J^2, 0.5",
-              0.5,
-              0.5,
-              NH_SQUARED,
-              20,
-              ALL,
-              {{0.095397, 0.997137},
-               {0.134911, 0.953146},
-               {0.190432, 0.780342},
-               {0.282052, 0.334583},
-               {0.325526, 0.058973}}}))
+    Values(Large{"logarithmic, k J^2, 0.2", 0.2, 0.5, SQUARED, 20, ALL, SQUARED_02},
+           Large{"logarithmic, k J^2, 0.5", 0.5, 0.5, SQUARED, 20, ALL, SQUARED_05},
+           Large{"logarithmic, k J^2, 1", 1.0, 0.7, SQUARED, 20, ALL},
+           Large{"logarithmic, constant k, 0.5", 0.5, 0.5, CONSTANT, 20, ALL},
+           Large{"logarithmic, Kozeny and Carman, 0.5, 10 cells", 0.5, 0.5, KOZENY, 10, ALL},
+           Large{"logarithmic, Kozeny and Carman, 0.5", 0.5, 0.5, KOZENY, 20, ALL},
+           Large{"logarithmic, Kozeny and Carman, 0.5, 40 cells", 0.5, 0.5, KOZENY, 40, EARLY},
+           Large{"neo-Hooke, constant k, 0.5", 0.5, 0.5, NH_CONSTANT, 20, ALL, NEO_HOOKE},
+           Large{"neo-Hooke, constant k, 0.5, cubic", 0.5, 0.5, NH_CONSTANT, 20, ALL, {}, "cubic"},
+           Large{"neo-Hooke, k J^2, 0.5", 0.5, 0.5, NH_SQUARED, 20, ALL, NEO_HOOKE_SQUARED}))
 {
   LONG_AFTER(1);
   const Large &soil = GetParam();
@@ -325,8 +293,10 @@ PARAMETER_TEST(
   const double h = 1.0 / n, ramp = 0.004;
   const auto incompressible = finite_volumes(soil, 0.0);
   const auto exact = finite_volumes(soil, 1.0 / BULK, ramp);
-  for (std::size_t k = 0; k < soil.table.size(); k++)
-    for (int j = 0; j < 2; j++) EXPECT_NEAR(incompressible[k][1 + j], soil.table[k][j], 2e-4);
+  for (std::size_t k = 0; k < soil.table.settlement.size(); k++) {
+    EXPECT_NEAR(incompressible[k][1], soil.table.settlement[k], 2e-4);
+    EXPECT_NEAR(incompressible[k][2], soil.table.pressure[k], 2e-4);
+  }
   Scene run(replaced(column(n,
                             strprintf("%g 1e-9 1.0 soil m %g %s 1.0 free pressure 0", BULK, soil.n0,
                                       soil.laws.permeability.c_str()),

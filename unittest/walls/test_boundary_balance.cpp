@@ -25,7 +25,7 @@ struct Turn {
 };
 constexpr Turn SLOWLY = {0.1, {0, 3}}, WITH_REGION = {0.3, {1, 3}};
 
-/** walls: VELOCITY and ROTATE are the options of GIVEN and SLOWLY. V, turn: of the wall w; others are
+/** walls: VELOCITY and ROTATE are the options of GIVEN and SLOWLY. V, turn: of w; others are
  *  at rest. */
 struct Motion {
   const char *name, *options, *walls;
