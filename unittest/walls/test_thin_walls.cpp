@@ -13,8 +13,6 @@
 #include "walls/mpm_region_surface.h"
 
 using namespace MPM_TEST;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr double g = 9.81, E = 1.0e6, NU = 0.3;
 
@@ -160,76 +158,62 @@ TEST(Punch, HeightDoesNotMatter)
 
 /* ------------------------------------------------ what nodes cannot tell is told */
 
-TEST(ThinRegions, AreReported)
+const std::string THINNER = "Fix mpm/boundary w: its region tool is thinner than 1.5 node spacings";
+
+SERIAL_TEST(ThinRegions, AreReported)
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
-  constexpr double h = 0.05;
-  const auto text = [](const std::string &body, const std::string &tool, const std::string &kind,
+  const auto told = [](const std::string &body, const std::string &tool, const std::string &kind,
                        const std::string &parts = "") {
-    const ScratchFile log("log");
-    {
-      Scene run("log " + log.name + "\n" + elastic_block(h, "0 2 0 1.2", body) + parts +
-                "region tool " + tool + "\nfix w all mpm/boundary region tool " + kind +
-                strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) + run_until(0.03));
-    }
-    return file_text(log.name);
+    return times_said(elastic_block(0.05, "0 2 0 1.2", body) + parts + "region tool " + tool +
+                          "\nfix w all mpm/boundary region tool " + kind +
+                          strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) + run_until(0.03),
+                      THINNER) > 0;
   };
-  const auto told =
-      HasSubstr("Fix mpm/boundary w: its region tool is thinner than 1.5 node spacings");
-  const std::string lower = "0.5 1.5 0.4 0.7", both = "0.5 1.5 0.2 0.8";
+  const std::string lower = "0.5 1.5 0.4 0.7", both = "0.5 1.5 0.2 0.8",
+                    wire = "cylinder z 1.01 0.38 0.02 INF INF";
   for (const char *kind : {"separate", "slip friction 0.1", "slip", "stick"}) {
+    SCOPED_TRACE(kind);
     // blades on which the block stands: between nodes, with nodes, and one that is wide enough
-    EXPECT_THAT(text(lower, "block 1.01 1.04 0 0.4 INF INF", kind), told) << kind;
-    EXPECT_THAT(text(lower, "block 0.99 1.02 0 0.4 INF INF", kind), told) << kind;
-    EXPECT_THAT(text(lower, "block 0.9 1.1 0 0.4 INF INF", kind), Not(told)) << kind;
-    // a wire
-    EXPECT_THAT(text(lower, "cylinder z 1.01 0.38 0.02 INF INF", kind), told) << kind;
-    EXPECT_THAT(text(lower, "union 2 far wire", kind,
-                     "region wire cylinder z 1.01 0.38 0.02 INF INF\n"
-                     "region far block -9 -8 -9 -8 INF INF\n"),
-                told)
-        << kind;
+    EXPECT_TRUE(told(lower, "block 1.01 1.04 0 0.4 INF INF", kind));
+    EXPECT_TRUE(told(lower, "block 0.99 1.02 0 0.4 INF INF", kind));
+    EXPECT_FALSE(told(lower, "block 0.9 1.1 0 0.4 INF INF", kind));
+    EXPECT_TRUE(told(lower, wire, kind));
+    EXPECT_TRUE(told(lower, "union 2 far wire", kind,
+                     "region wire " + wire + "\nregion far block -9 -8 -9 -8 INF INF\n"));
     // a plate within the block, one below it, and one that is thick
-    EXPECT_THAT(text(both, "block 0 2 0.51 0.54 INF INF", kind), told) << kind;
-    EXPECT_THAT(text(lower, "block 0 2 0.37 0.4 INF INF", kind), Not(told)) << kind;
-    EXPECT_THAT(text(both, "block 0 2 0.5 0.7 INF INF", kind), Not(told)) << kind;
+    EXPECT_TRUE(told(both, "block 0 2 0.51 0.54 INF INF", kind));
+    EXPECT_FALSE(told(lower, "block 0 2 0.37 0.4 INF INF", kind));
+    EXPECT_FALSE(told(both, "block 0 2 0.5 0.7 INF INF", kind));
   }
   // lines hold what is in front of a plate of any thickness, see ThinPlate.CarriesABlock
   for (const char *kind : {"slip", "stick"})
-    for (const char *plate : {"block 0 2 0.36 0.39 INF INF", "block 0 2 0.37 0.4 INF INF"})
-      EXPECT_THAT(text(lower, plate, kind), Not(told)) << kind << plate;
-  EXPECT_THAT(text(lower, "block 0.9 1.1 0 0.4 INF INF", "stick"), Not(told));
-  EXPECT_THAT(text(both, "cylinder z 1 0.2 0.3 INF INF side out", "stick"), Not(told));
+    EXPECT_FALSE(told(lower, "block 0 2 0.36 0.39 INF INF", kind)) << kind;
+  EXPECT_FALSE(told(both, "cylinder z 1 0.2 0.3 INF INF side out", "stick"));
   // the ends of plates, and wedges, are sound
-  EXPECT_THAT(text(lower, "block 0.52 1.48 0.3 0.4 INF INF", "separate"), Not(told));
-  EXPECT_THAT(text(lower, "block 0.48 3 0.38 0.4 INF INF", "separate"), Not(told));
-  EXPECT_THAT(text(lower, "prism 0.7 1.3 0.1 0.41 -1 1 0.3 0 0", "separate"), Not(told));
+  EXPECT_FALSE(told(lower, "block 0.52 1.48 0.3 0.4 INF INF", "separate"));
+  EXPECT_FALSE(told(lower, "block 0.48 3 0.38 0.4 INF INF", "separate"));
+  EXPECT_FALSE(told(lower, "prism 0.7 1.3 0.1 0.41 -1 1 0.3 0 0", "separate"));
 }
 
 TEST(ThinRegions, AreReportedIn3d)
 {
   const auto is_told = [](const std::string &tool, const std::string &kind) {
-    const ScratchFile log("log");
-    {
-      Scene run("log " + log.name + "\n" + space("lj", "f f f", "0 10 0 10 0 10") +
-                body("block 2 8 2 8 5 8", "density 1.0 neohookean 10.0 0.3") + "region tool " +
-                tool + "\nfix w all mpm/boundary region tool " + kind + "\ntimestep 0.01\nrun 2\n");
-    }
-    MPI_Barrier(MPI_COMM_WORLD);
-    return file_text(log.name).find("region tool is thinner than 1.5") != std::string::npos;
+    return times_said(space("lj", "f f f", "0 10 0 10 0 10") +
+                          body("block 2 8 2 8 5 8", "density 1.0 neohookean 10.0 0.3") +
+                          "region tool " + tool + "\nfix w all mpm/boundary region tool " + kind +
+                          "\ntimestep 0.01\nrun 2\n",
+                      THINNER) > 0;
   };
   for (const char *kind : {"separate", "slip friction 0.1", "slip", "stick"}) {
     // blades across two axes, with a node and without; wires that lie and stand; a plate
-    EXPECT_TRUE(is_told("block 5.2 5.8 0 10 1 5", kind)) << kind;
-    EXPECT_TRUE(is_told("block 0 10 4.8 5.3 1 5", kind)) << kind;
-    EXPECT_TRUE(is_told("cylinder y 5.3 4.6 0.4 0 10", kind)) << kind;
-    EXPECT_TRUE(is_told("cylinder z 5.3 4.8 0.5 1 5", kind)) << kind;
-    EXPECT_TRUE(is_told("block 0 10 0 10 6.2 6.8", kind)) << kind;
+    for (const char *thin :
+         {"block 5.2 5.8 0 10 1 5", "block 0 10 4.8 5.3 1 5", "cylinder y 5.3 4.6 0.4 0 10",
+          "cylinder z 5.3 4.8 0.5 1 5", "block 0 10 0 10 6.2 6.8"})
+      EXPECT_TRUE(is_told(thin, kind)) << kind << thin;
     // what is wide enough, and a plate with material on one side
-    EXPECT_FALSE(is_told("block 3.7 6.3 0 10 1 5", kind)) << kind;
-    EXPECT_FALSE(is_told("cylinder y 5.3 2 3 0 10", kind)) << kind;
-    EXPECT_FALSE(is_told("cylinder z 5.3 4.8 1.5 1 5", kind)) << kind;
-    EXPECT_FALSE(is_told("block 0 10 0 10 4.4 5", kind)) << kind;
+    for (const char *wide : {"block 3.7 6.3 0 10 1 5", "cylinder y 5.3 2 3 0 10",
+                             "cylinder z 5.3 4.8 1.5 1 5", "block 0 10 0 10 4.4 5"})
+      EXPECT_FALSE(is_told(wide, kind)) << kind << wide;
   }
 }
 
@@ -242,24 +226,20 @@ struct Warned {
 std::vector<std::string> warnings_of(const std::string &region, const std::string &kind,
                                      const Warned &w)
 {
-  const ScratchFile log("once.log");
-  {
-    const auto block = elastic_block(0.05, w.extent, w.body);
-    Scene scene("log " + log.name + "\nprocessors " + w.ranks + "\n" +
-                replaced(block, "origin 0 0", strprintf("origin 0 0 every %d", w.every)) + w.more +
-                "variable still equal 0.0\nregion tool " + region +
-                "\nfix w all mpm/boundary region tool " + kind +
-                strprintf("\nfix g all gravity %g vector 0 -1 0\ntimestep 2.0e-4\n", g) + w.run);
-  }
-  MPI_Barrier(MPI_COMM_WORLD);
-  std::vector<std::string> lines;
-  std::ifstream file(log.name);
-  for (std::string line; std::getline(file, line);) {
+  const auto lines = lines_that_say(
+      "processors " + w.ranks + "\n" +
+          replaced(elastic_block(0.05, w.extent, w.body), "origin 0 0",
+                   strprintf("origin 0 0 every %d", w.every)) +
+          w.more + "variable still equal 0.0\nregion tool " + region +
+          "\nfix w all mpm/boundary region tool " + kind +
+          strprintf("\nfix g all gravity %g vector 0 -1 0\ntimestep 2.0e-4\n", g) + w.run,
+      THINNER);
+  std::vector<std::string> places;
+  for (const auto &line : lines) {
     const auto near = line.find("near "), end = line.find("):");
-    if (line.find("is thinner than 1.5 node spacings") < near && end != std::string::npos)
-      lines.push_back(line.substr(near, end + 1 - near));
+    if (end != std::string::npos) places.push_back(line.substr(near, end + 1 - near));
   }
-  return lines;
+  return places;
 }
 
 // Once for all ranks, and with the same place: a blade below the last of two ranks was reported by
@@ -574,10 +554,10 @@ TEST(Unions, In3d)
     expect_push(in_union, plate);
     expect_same(in_union, alone, 1.0e-12, plate);
   }
-  const auto whole = forces_of_impact("region wall block 0 10 0 10 5 9"),
-             halves =
-                 forces_of_impact("region a block 0 5.5 0 10 5 9\nregion b block 4.5 10 0 10 5 9\n"
-                                  "region wall union 2 a b");
+  const auto whole = forces_of_impact("region wall block 0 10 0 10 5 9");
+  const auto halves =
+      forces_of_impact("region a block 0 5.5 0 10 5 9\nregion b block 4.5 10 0 10 5 9\n"
+                       "region wall union 2 a b");
   expect_same(halves, whole, 1.0e-10, "two halves that overlap");
 }
 
@@ -620,13 +600,17 @@ TEST(MovingWall, BlocksSlide)
   const double slides =
       0.5 * (gt - f) * time * time + 0.5 * f * sticks * time - f * sticks * sticks / 6.0;
   const double rest[2] = {0.0, 0.0}, along[2] = {2.0, 0.0}, belt[2] = {4.0, 0.0},
-               up[2] = {0.0, 1.0};
+               up[2] = {0.0, 1.0}, dragged = 0.5 * (gt + f) * time * time;
   constexpr double h = 0.05;
-  EXPECT_NEAR(measured("wall and block at rest", way(h, 0.42, rest, rest) / slides), 1.0, 0.02);
-  EXPECT_NEAR(measured("both move along it", way(h, 0.42, along, along) / slides), 1.0, 0.02);
-  EXPECT_NEAR(measured("belt", way(h, 0.42, belt, rest) / (0.5 * (gt + f) * time * time)), 1.0,
-              0.02);
-  EXPECT_NEAR(measured("both move upward", way(h, 0.42, up, up) / slides), 1.0, 0.02);
-  EXPECT_NEAR(measured("h/2, both move along it", way(0.5 * h, 0.42, along, along) / slides), 1.0,
-              0.02);
+  const struct {
+    const char *name;
+    double h, exact;
+    const double *wall, *first;
+  } cases[] = {{"wall and block at rest", h, slides, rest, rest},
+               {"both move along it", h, slides, along, along},
+               {"belt", h, dragged, belt, rest},
+               {"both move upward", h, slides, up, up},
+               {"h/2, both move along it", 0.5 * h, slides, along, along}};
+  for (const auto &c : cases)
+    EXPECT_NEAR(measured(c.name, way(c.h, 0.42, c.wall, c.first) / c.exact), 1.0, 0.02);
 }
