@@ -49,6 +49,7 @@
 #include <memory>
 #include <mpi.h>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -764,17 +765,23 @@ struct Twins {
   }
 };
 
+/** The log of these commands. */
+inline std::string log_of(Scene &run, const std::string &commands)
+{
+  const ScratchFile log("said.log");
+  run.commands("log " + log.name + "\n" + commands + "log none\n");
+  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
+  return file_text(log.name);
+}
+
 /** Lines of the log of these commands that contain these words. */
 inline std::vector<std::string> lines_that_say(const std::string &commands,
                                                const std::string &words)
 {
   Scene run;
-  const ScratchFile log("said.log");
-  run.commands("log " + log.name + "\n" + commands + "log none\n");
-  MPI_Barrier(MPI_COMM_WORLD);
+  std::istringstream log(log_of(run, commands));
   std::vector<std::string> lines;
-  std::ifstream file(log.name);
-  for (std::string line; std::getline(file, line);)
+  for (std::string line; std::getline(log, line);)
     if (line.find(words) != std::string::npos) lines.push_back(line);
   return lines;
 }

@@ -205,12 +205,10 @@ SERIAL_TEST(Level, ForcesAndWork)
   EXPECT_NEAR(measured("residual", e[10] / (e[0] + e[1])), 0.0, 1e-11);
   // the energy watch knows the work at the sides: it tells transfer and integration of the ledger
   const double before = e[8] + e[9];
-  const ScratchFile file("log");
-  EXPECT_EQ(run.error("log " + file.name + "\nrun 1200\nlog none\n"), "");
+  const auto text = log_of(run, "run 1200\n");
   run.lmp->modify->get_compute_by_id("e")->compute_scalar();
   const std::regex energy("friction took ([-+.e0-9]+) .*numerical errors added ([-+.e0-9]+)");
   std::smatch found;
-  const std::string text = file_text(file.name);
   ASSERT_TRUE(std::regex_search(text, found, energy));
   const double added = std::stod(found[2]) - std::stod(found[1]);
   EXPECT_NEAR(measured("watch less ledger", (added - (e[8] + e[9] - before)) / (e[0] + e[1])), 0.0,

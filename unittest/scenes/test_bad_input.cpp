@@ -271,14 +271,8 @@ class DoubtfulInput : public ::testing::TestWithParam<Change> {};
 TEST_P(DoubtfulInput, HasAWarning)
 {
   const auto &[name, from, to, warning] = GetParam();
-  const ScratchFile file("doubts.log");
-  const std::string scene =
-      changed(good_scene, "units lj\n", "units si\n" + std::string(SKIN)) + "log none\n";
-  Scene run("log " + file.name + "\n" + changed(scene, from, to));
-  std::vector<std::string> found;
-  std::ifstream log(file.name);
-  for (std::string line; std::getline(log, line);)
-    if (contains(line, "^WARNING")) found.push_back(line);
+  const auto scene = changed(good_scene, "units lj\n", "units si\n" + std::string(SKIN));
+  const auto found = lines_that_say(changed(scene, from, to), "WARNING");
   EXPECT_EQ(found.size(), warning.empty() ? 0 : 1) << ::testing::PrintToString(found);
   if (!warning.empty() && !found.empty()) {
     EXPECT_TRUE(contains(found[0], warning)) << "expected: " << warning << "\nfound: " << found[0];

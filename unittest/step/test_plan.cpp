@@ -230,10 +230,8 @@ TEST(Stages, ReadNodesThatWereWritten)
 
 TEST(Stages, ArePrinted)
 {
-  ScratchFile log("log");
-  Scene run(in_plane("plan yes", "log " + log.name + "\nrun 1\nlog none\n"));
-  std::ifstream file(log.name);
-  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  Scene run(in_plane("plan yes", ""));
+  const auto text = log_of(run, "run 1\n");
   for (const auto &stage : MPMField::all(run.lmp)[0]->plan->list())
     EXPECT_NE(text.find(stage.reads.text() + " -> " + stage.writes.text()), std::string::npos)
         << stage.name;

@@ -36,11 +36,9 @@ struct Found {
 };
 Found told_by(const std::string &scene)
 {
-  const ScratchFile file("log");
-  Scene run("log " + file.name + "\n" + scene + "log none\n");
+  Scene run;
+  const auto text = log_of(run, scene);
   Found found;
-  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
-  const std::string text = file_text(file.name);
   const std::regex message("WARNING: Numerical errors have added the energy ([-+.e0-9]+) to the "
                            "material points by step [0-9]+ of this run, ([-+.e0-9]+) %");
   for (std::sregex_iterator at(text.begin(), text.end(), message), end; at != end; ++at) {
@@ -120,8 +118,7 @@ TEST(EnergyWatch, WavesThatStartWithoutStrainAreNoGain)
 // Two blocks with sound speeds of sqrt(G/rho) = 1e-3 and less: their deformation stays what it is
 TEST(Summary, TellsStateEnergyAndTimeStep)
 {
-  const ScratchFile file("log");
-  Scene run("log " + file.name + "\n" + space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
+  Scene run(space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
             body("block 2 6 0 4 0 4", "density 2 linear 1e-6 0", "1.0") +
             "velocity all set 1 0 0\ngroup one id 17\nvelocity one set 1.5 0 0\n"
             "timestep 0.1\nrun 0 post no\n");
@@ -130,9 +127,7 @@ TEST(Summary, TellsStateEnergyAndTimeStep)
     if (atom->tag[i] == 5) run.points().F[i][0] = 0.75;
     if (atom->tag[i] == 9) run.points().F[i][4] = 1.25;
   }
-  run.commands("run 1\nlog none\n");
-  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
-  const std::string text = file_text(file.name);
+  const auto text = log_of(run, "run 1\n");
   const std::regex limit("1 steps, time step 0\\.1, at the end 0\\.([0-9]+) of the limit"),
       state("volumes 0\\.75[0-9]* \\(point 5\\) to 1\\.2[45][0-9]* \\(point 9\\) times the initial "
             "ones, speeds up to 1\\.[0-9]* \\(point 17\\)");
@@ -143,10 +138,8 @@ TEST(Summary, TellsStateEnergyAndTimeStep)
 
 TEST(Summary, TellsEnergies)
 {
-  const ScratchFile file("log");
-  Scene run("log " + file.name + "\n" + drift("") + faster(0.9) + faster(0.915) + "log none\n");
-  MPI_Barrier(MPI_COMM_WORLD);
-  const std::string text = file_text(file.name);
+  Scene run;
+  const auto text = log_of(run, drift("") + faster(0.9) + faster(0.915));
   const std::regex energy(
       "energy at the end: kinetic ([0-9.]+), stored ([-.e0-9]+); since the start transfers and "
       "friction took ([-.e0-9]+) \\(([-.e0-9]+) % of the energy in play\\), and numerical errors "
