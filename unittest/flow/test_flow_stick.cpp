@@ -238,10 +238,8 @@ SERIAL_TEST(Stick, Bowl)
   const double volume = run.fix("w")->compute_vector(FILLED);
   double before = 1e9, most = 0.0;
   run.each_step([&](double **) {
-    double now = 0.0;
-    for (int i = 0; i < run.n(); i++)
-      now += run.lmp->atom->rmass[i] *
-          (0.5 * (std::pow(run.v()[i][0], 2) + std::pow(run.v()[i][1], 2)) + 9.81 * run.x()[i][1]);
+    const auto s = run.sums();
+    const double now = s.kinetic + 9.81 * s.mass * s.x[1];
     most = std::max(most, now / before - 1.0);
     before = now;
   });

@@ -43,17 +43,6 @@ std::string sheet(double h, double offset, double nu)
       strprintf("fix w all mpm/incompressible %.17g 1 viscosity %g implicit yes\n", h, nu);
 }
 
-std::array<double, 3> momenta(Scene &run)    // and the angular one about the origin
-{
-  std::array<double, 3> sum = {};
-  for (const auto &s : run.gather()) {
-    sum[0] += s.mass * s.v[0];
-    sum[1] += s.mass * s.v[1];
-    sum[2] += s.mass * (s.x[0] * s.v[1] - s.x[1] * s.v[0]);
-  }
-  return sum;
-}
-
 // H2: from rest to an unsteady time, of first order in the step, and to steady flow in any steps
 SERIAL_TEST(Plates, CouetteAndPoiseuille)
 {
@@ -185,14 +174,15 @@ SERIAL_TEST(Blob, TurnsRigidly)
                 "variable vx atom -0.5*(y-0.0003)+0.03\nvariable vy atom 0.5*(x+0.02)\n"
                 "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000 " +
                 std::string(k ? "viscosity 1e5 implicit yes" : "") + "\ntimestep 0.02\nrun 0\n");
-      const auto before = momenta(run);
+      const auto before = run.sums();
       const double energy = run.fix("w")->compute_vector(KINETIC);
       run.commands(dim == 3 ? "run 10\n" : "run 50\n");
-      const auto after = momenta(run);
-      left[k] = after[2] / before[2];
+      const auto after = run.sums();
+      left[k] = after.L[2] / before.L[2];
       measured(strprintf("%dd: angular momentum that is left", dim), left[k]);
       measured("energy that is left", run.fix("w")->compute_vector(KINETIC) / energy);
-      for (int d = 0; d < 2; d++) EXPECT_NEAR(after[d] / before[0], before[d] / before[0], 0.02);
+      for (int d = 0; d < 2; d++)
+        EXPECT_NEAR(after.p[d] / before.p[0], before.p[d] / before.p[0], 0.02);
       EXPECT_NEAR(left[k], 1.0, 0.02);
     }
   }
@@ -209,9 +199,9 @@ SERIAL_TEST(Blob, KeepsMomentaInAStep)
               "variable vx atom 0.5*x+0.2*y+3*x*y\nvariable vy atom -0.5*y+0.7*x-1.5*y*y\n"
               "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.03125 1000 spread 0 " +
               std::string(k ? "viscosity 1e5 implicit yes" : "") + "\ntimestep 0.001\nrun 0\n");
-    const auto before = momenta(run);
+    const auto before = run.sums();
     run.commands("run 1\n");
-    change[k] = momenta(run)[2] / before[2] - 1.0;
+    change[k] = run.sums().L[2] / before.L[2] - 1.0;
     measured("change of angular momentum", change[k]);
   }
   EXPECT_LT(std::fabs(change[1]), 0.01);

@@ -650,20 +650,10 @@ SERIAL_TEST(Drop, InFlight)
                 "variable vx atom -0.5*(y-0.47)+0.3\nvariable vy atom 0.5*(x-0.52)\n"
                 "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000" +
                 (spread ? "" : " spread 0") + "\ntimestep 0.02\nrun 0\n");
-      const auto spin = [&run] {
-        double L = 0.0, p[2] = {0.0, 0.0};
-        const auto all = run.gather();
-        double c[2] = {0.0, 0.0}, m = 0.0;
-        for (const auto &s : all) {
-          m += s.mass;
-          for (int d = 0; d < 2; d++) {
-            c[d] += s.mass * s.x[d];
-            p[d] += s.mass * s.v[d];
-          }
-        }
-        for (const auto &s : all)
-          L += s.mass * ((s.x[0] - c[0] / m) * s.v[1] - (s.x[1] - c[1] / m) * s.v[0]);
-        return std::array<double, 3>{L, p[0] / m, p[1] / m};
+      const auto spin = [&run] {    // about the center, and mean velocity
+        const auto s = run.sums();
+        return std::array{s.L[2] - s.x[0] * s.p[1] + s.x[1] * s.p[0], s.p[0] / s.mass,
+                          s.p[1] / s.mass};
       };
       const auto before = spin();
       run.commands("run 50\n");

@@ -506,10 +506,7 @@ std::string filled(const std::string &faces, const std::string &extent, const st
 /** Kinetic energy of all points. */
 double kinetic(Scene &run)
 {
-  double sum = 0.0;
-  for (int i = 0; i < run.n(); i++)
-    for (int d = 0; d < 3; d++) sum += 0.5 * run.mass()[i] * run.v()[i][d] * run.v()[i][d];
-  return over_ranks(sum);
+  return over_ranks(run.sums().kinetic);
 }
 
 // Packets of plane waves at an angle to layers or dashpots at the end of a strip, against one that

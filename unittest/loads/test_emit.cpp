@@ -366,11 +366,7 @@ TEST(Plug, WorkOfAShakenMouth)
                 "compute e all mpm/energy\nthermo_style custom step c_e\n" +
                 strprintf("timestep %g\nrun 1\n", dt));
       const auto kinetic = [&]() {
-        double sum = 0.0;
-        for (int i = 0; i < run.n(); i++)
-          for (int d = 0; d < 2; d++)
-            sum += 0.5 * run.mass()[i] * run.lmp->atom->v[i][d] * run.lmp->atom->v[i][d];
-        return over_ranks(sum, MPI_SUM);
+        return over_ranks(run.sums().kinetic);
       };
       const double work = run.fix("in")->compute_vector(12), start = kinetic();
       run.commands("run 40\n");

@@ -169,16 +169,6 @@ SERIAL_TEST(MeshGrid, PatchOfAnyCells)
   }
 }
 
-/** Of all points. */
-static std::array<double, 2> momentum(Scene &run)
-{
-  std::array<double, 2> p = {0.0, 0.0};
-  const Atom *atom = run.lmp->atom;
-  for (int i = 0; i < atom->nlocal; i++)
-    for (int d = 0; d < 2; d++) p[d] += atom->rmass[i] * atom->v[i][d];
-  return p;
-}
-
 // A bar that swings keeps its energy, and what a force does to it is in the work
 SERIAL_TEST(MeshGrid, EnergyAndMomentum)
 {
@@ -191,16 +181,16 @@ SERIAL_TEST(MeshGrid, EnergyAndMomentum)
                 frame == "total" ? "" : grid.name) +
           "velocity all set 0.1 0.1 0\nfix f all addforce 0 1e-4 0\nvariable v atom 0.05*(x-2)^2\n"
           "velocity all set NULL v_v NULL sum yes\nfix d all mpm/dt 0.2 until 10\n");
-      const auto p0 = momentum(run);
+      const auto p0 = run.sums();
       run.commands("run 0\n");
       const double before = entry(run, 1);
       run.commands("run 10000\n");
       const double now = entry(run, 1) + entry(run, 2), work = entry(run, 3);
       measured("energy that is lost", (before + work - now) / before);
       EXPECT_NEAR(before + work - now, 0.0, 0.01 * before);
-      const auto p1 = momentum(run);
-      EXPECT_NEAR(p1[0], p0[0], 1e-12);
-      EXPECT_NEAR(p1[1], p0[1] + 10.0 * 1e-4 * run.gather().size(), 1e-11);
+      const auto p1 = run.sums();
+      EXPECT_NEAR(p1.p[0], p0.p[0], 1e-12);
+      EXPECT_NEAR(p1.p[1], p0.p[1] + 10.0 * 1e-4 * run.gather().size(), 1e-11);
     }
 }
 
@@ -215,17 +205,10 @@ SERIAL_TEST(MeshGrid, SlipAlongACurve)
   Scene run(scene(2, file.name, "linear 1 0.3", "frame total transfer flip 1 slip xlo slip xhi") +
             "variable vx atom -0.01*y\nvariable vy atom 0.01*x\nvelocity all set v_vx v_vy NULL\n"
             "timestep 0.005\n");
-  double spin[2];
-  for (int turn = 0; turn < 2; turn++) {
-    spin[turn] = 0.0;
-    const Atom *atom = run.lmp->atom;
-    for (int i = 0; i < atom->nlocal; i++)
-      spin[turn] +=
-          atom->rmass[i] * (atom->x[i][0] * atom->v[i][1] - atom->x[i][1] * atom->v[i][0]);
-    if (turn == 0) run.commands("run 400\n");    // 0.02 of the radius
-  }
+  const double spin = run.sums().L[2];
+  run.commands("run 400\n");    // 0.02 of the radius
   // walls push along their normals only, which are right to the second order of the angle of a side
-  EXPECT_NEAR(measured("spin that is left", spin[1] / spin[0]), 1.0, 2e-3);
+  EXPECT_NEAR(measured("spin that is left", run.sums().L[2] / spin), 1.0, 2e-3);
 }
 
 // Sides of one group that meet at a right angle hold their corner along both normals

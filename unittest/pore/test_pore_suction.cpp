@@ -321,14 +321,10 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
                       Ss, bishop, table) +
             "velocity all set 5 0 0\n");
         run_to(run, T);
-        double v = 0.0, all = 0.0;
-        for (int i = 0; i < run.n(); i++) {
-          v += run.mass()[i] * run.v()[i][0];
-          all += run.mass()[i];
-        }
+        const auto s = run.sums();
         EXPECT_NEAR(measured(strprintf("%s, Ss %g, table %g, spacing %g: over %.4f m/s^2", bishop,
                                        Ss, table, h, slower),
-                             (5.0 - v / all) / (T * slower)),
+                             (5.0 - s.p[0] / s.mass) / (T * slower)),
                     1.0, 0.01);
       }
     }
@@ -462,12 +458,8 @@ TEST(Momentum, OfABodyThatMoves)
       "fix water all mpm/pore 50.0 0.5 1.0 soil m 0.4 constant 0.1 retention vangenuchten 1.0 2.0 "
       "initial v_p\ntimestep 0.005\nrun 0\n");
   const auto sums = [&]() {
-    std::vector<double> sum(3, 0.0);
-    for (int i = 0; i < run.n(); i++) {
-      sum[0] += run.mass()[i];
-      for (int d = 0; d < 2; d++) sum[1 + d] += run.mass()[i] * run.v()[i][d];
-    }
-    return over_ranks(sum);
+    const auto s = run.sums();
+    return over_ranks({s.mass, s.p[0], s.p[1]});
   };
   const auto before = sums();
   run.commands("run 400\n");
