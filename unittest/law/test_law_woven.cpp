@@ -4,8 +4,7 @@
 
 // The law of fabrics at a point and on a surface, against closed forms and pin-jointed yarns.
 
-#include "material/material_testing.h"
-#include "material/plane_stress.h"
+#include "material/plane_stress_testing.h"
 
 using namespace MPM_NS;
 using namespace material_testing;
@@ -136,46 +135,6 @@ TEST(Woven, BiasExtensionIsATrellis)
   EXPECT_NEAR(errors[0] / errors[1], 100.0, 5.0);
 }
 
-/** One point of a surface whose normal and yarns are anywhere in space. */
-struct Cloth {
-  std::unique_ptr<Material> material;
-  PlaneStress state;
-  Batch batch = {};
-  std::vector<double> history;
-  PlaneStress::Point point;
-  double old[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-
-  Cloth(const std::string &text, const Matrix &turn) :
-      material(make(text)), state(*material, 3, 2, true, true)
-  {
-    const double a[3] = {turn[0], turn[3], turn[6]}, b[3] = {turn[1], turn[4], turn[7]};
-    state.make_frame(a, b, point.frame);
-    history.resize(std::max<std::size_t>(1, material->history().size()) * BATCH);
-    batch.n = 1;
-    batch.dt = batch.h = batch.vol0[0] = 1.0;
-    batch.history = reinterpret_cast<double(*)[BATCH]>(history.data());
-    point.old = old;
-  }
-  Matrix go(const Matrix &F)
-  {
-    std::fill_n(point.along, 9, 0.0);
-    for (int k = 0; k < 2; k++)
-      for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-          point.along[3 * i + j] += dot(&F[3 * i], point.frame[k]) * point.frame[k][j];
-    EXPECT_EQ(state.update(batch, &point,
-                           [&](Batch &b) {
-                             material->update(b);
-                           }),
-              -1);
-    for (int c = 0; c < 9; c++) old[c] = batch.F[c][0];
-    static constexpr int voigt[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
-    Matrix s;
-    for (int c = 0; c < 9; c++) s[c] = batch.stress[voigt[c]][0];
-    return s;
-  }
-};
-
 // a surface with any normal, turned in space: the stress of the law in its own axes, turned; also
 // of wood. The deformation gradient that is kept is that of space, not of the axes
 TEST(Woven, AxesLieOnSurfaces)
@@ -187,7 +146,7 @@ TEST(Woven, AxesLieOnSurfaces)
             "density 440 orthotropic 11e9 0.9e9 0.5e9 0.37 0.47 0.43 0.7e9 0.65e9 0.04e9")}) {
     SCOPED_TRACE(text);
     Matrix flat = {1.02, 0.3, 0, 0.1, 1.05, 0, 0, 0, 1};
-    Cloth cloth(text, turn);
+    Surface cloth(text, 3, 2, true, true, {turn[0], turn[3], turn[6]}, {turn[1], turn[4], turn[7]});
     const Matrix s = cloth.go(later * flat * transpose(turn));
     flat[8] = 0.0;
     double thickness = 0.0;    // of the deformed surface

@@ -6,66 +6,13 @@
 // Surfaces and lines: the stretch across them, and what does not resist compression. The
 // neo-Hookean law against its own equations, solved here; balloons: benchmark R2.
 
-#include "material/material_testing.h"
-#include "material/plane_stress.h"
+#include "material/plane_stress_testing.h"
 #include "math/bag_gas.h"
 
 using namespace MPM_NS;
 using namespace material_testing;
 
 constexpr double E = 1000.0;
-
-struct Surface {
-  std::unique_ptr<Material> material;
-  PlaneStress state;
-  Batch batch = {};
-  std::vector<double> history;
-  PlaneStress::Point point;
-  double old[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  int dim, along;
-
-  Surface(const std::string &text, int dim, int along, bool compression) :
-      material(make(text)), state(*material, dim, along, compression), dim(dim), along(along)
-  {
-    const double a[3] = {1.0, 0.0, 0.0}, b[3] = {0.3, 1.0, 0.0};
-    state.make_frame(a, b, point.frame);
-    history.resize(std::max<std::size_t>(1, material->history().size()) * BATCH);
-    batch.n = 1;
-    batch.dt = batch.h = batch.vol0[0] = 1.0;
-    batch.history = reinterpret_cast<double(*)[BATCH]>(history.data());
-    point.old = old;
-  }
-
-  /** Stress after a motion with the F of the whole space; what is along the body counts. */
-  Matrix go(const Matrix &F)
-  {
-    std::fill_n(point.along, 9, 0.0);
-    for (int k = 0; k < along; k++)
-      for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-          point.along[3 * i + j] += dot(&F[3 * i], point.frame[k]) * point.frame[k][j];
-    int calls = 0;
-    EXPECT_EQ(state.update(batch, &point,
-                           [&](Batch &b) {
-                             material->update(b);
-                             calls++;
-                           }),
-              -1);
-    EXPECT_EQ(calls, 1);
-    for (int c = 0; c < 9; c++) old[c] = batch.F[c][0];
-    static constexpr int voigt[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
-    Matrix s;
-    for (int c = 0; c < 9; c++) s[c] = batch.stress[voigt[c]][0];
-    return s;
-  }
-
-  double energy()
-  {
-    double w[BATCH];
-    material->stored_energy(batch, w);
-    return w[0];
-  }
-};
 
 std::string rubber(double nu)
 {
