@@ -110,21 +110,6 @@ TEST(SoilLaws, RotationOnTopOfShear)
   }
 }
 
-/** Moves a point of a batch by I + A. */
-void displace(Batch &b, int i, Matrix A)
-{
-  Matrix F;
-  for (int k = 0; k < 9; k++) {
-    b.A[k][i] = A[k];
-    A[k] += IDENTITY[k];
-    F[k] = b.F[k][i];
-  }
-  F = A * F;
-  for (int k = 0; k < 9; k++) b.F[k][i] = F[k];
-  b.Jold[i] = b.J[i];
-  b.J[i] = det(F);
-}
-
 // steps of any size and direction: finite, and dissipation is never negative
 TEST(SoilLaws, LargeSteps)
 {

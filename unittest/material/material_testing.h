@@ -28,6 +28,7 @@
 
 namespace material_testing {
 
+using MPM_NS::Batch;
 using MPM_NS::Material;
 using MPM_NS::MaterialPoint;
 
@@ -107,6 +108,21 @@ inline Matrix uniaxial_stretch(double l)
 inline double det(const Matrix &F)
 {
   return MPM_NS::determinant(F.data());
+}
+
+/** Moves a point of a batch by I + A. */
+inline void displace(Batch &b, int i, Matrix A)
+{
+  Matrix F;
+  for (int k = 0; k < 9; k++) {
+    b.A[k][i] = A[k];
+    A[k] += IDENTITY[k];
+    F[k] = b.F[k][i];
+  }
+  F = A * F;
+  for (int k = 0; k < 9; k++) b.F[k][i] = F[k];
+  b.Jold[i] = b.J[i];
+  b.J[i] = det(F);
 }
 
 inline Matrix inverse(const Matrix &M)

@@ -9,7 +9,6 @@
 
 namespace material_testing {
 
-using MPM_NS::Batch;
 using MPM_NS::BATCH;
 using MPM_NS::dot;
 using MPM_NS::PlaneStress;

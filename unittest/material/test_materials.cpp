@@ -816,18 +816,10 @@ std::vector<Row> trajectory(const Material &material, int n, int points)
     b.dt = 1e-3;
     double strain = 0.0;
     for (int i = 0; i < BATCH; i++) {
-      Matrix A = random(i % 3 ? 0.01 : 1e-6), F;    // some stay elastic
+      const Matrix A = random(i % 3 ? 0.01 : 1e-6);    // some stay elastic
       if (i >= n) continue;
-      for (int k = 0; k < 9; k++) {
-        if (i < points) strain = std::max(strain, std::fabs(A[k]));
-        b.A[k][i] = A[k];
-        A[k] += IDENTITY[k];
-        F[k] = b.F[k][i];
-      }
-      F = A * F;
-      for (int k = 0; k < 9; k++) b.F[k][i] = F[k];
-      b.Jold[i] = b.J[i];
-      b.J[i] = det(F);
+      for (int k = 0; k < 9 && i < points; k++) strain = std::max(strain, std::fabs(A[k]));
+      displace(b, i, A);
     }
     std::fill_n(b.heat, b.n, 0.0);
     spoil_stack();

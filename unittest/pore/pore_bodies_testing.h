@@ -40,11 +40,8 @@ struct PointWater {
 /** Water of all points on all ranks, in order of tags. The scene must have the computes of PORE. */
 inline std::vector<PointWater> water_of_points(Scene &run)
 {
-  const auto values = [&](const char *id) {
-    auto *compute = run.per_atom(id);
-    return compute->vector_atom;
-  };
-  const double *const p = values("pore"), *const S = values("saturation");
+  const double *const p = run.per_atom("pore")->vector_atom,
+                      *const S = run.per_atom("saturation")->vector_atom;
   std::vector<PointWater> mine;
   for (int i = 0; i < run.n(); i++) mine.push_back({(double) run.lmp->atom->tag[i], p[i], S[i]});
   return all_by_tag(mine, run.lmp->world);
@@ -92,6 +89,15 @@ inline void expect_continues(const std::string &scene, const std::string &variab
   ASSERT_EQ(one.size(), two.size());
   EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(PointWater)), 0);
   EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+}
+
+/** Greatest velocity of points over what the weight alone would give them in the time t. */
+inline double fall(Scene &run, double t)
+{
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    for (int d = 0; d < 3; d++) grow(most, run.v()[i][d]);
+  return over_ranks(most) / (9.81 * run.lmp->force->ftm2v * t);
 }
 
 }    // namespace MPM_TEST

@@ -6,7 +6,7 @@
 
 // The command mpm_geostatic: level ground at rest. With pore water: test_pore.cpp.
 
-#include "mpm_lammps.h"
+#include "pore/pore_bodies_testing.h"
 
 using namespace MPM_TEST;
 
@@ -28,15 +28,6 @@ std::string ground(int dim, int n, const std::string &law, double offset,
       strprintf("fix m all mpm/material density %g ", DENSITY) + law +
       "\nfix floor all mpm/boundary " + (dim == 3 ? "zlo" : "ylo") + " slip\n" +
       strprintf("fix g all gravity %g vector ", G) + up + "\n";
-}
-
-/** Greatest velocity of points over what the weight alone would give them in the time t. */
-double fall(Scene &run, double t)
-{
-  double most = 0.0;
-  for (int i = 0; i < run.n(); i++)
-    for (int d = 0; d < 3; d++) grow(most, run.v()[i][d]);
-  return over_ranks(most) / (G * run.lmp->force->ftm2v * t);
 }
 
 // forces on nodes are zero wherever these are, the stress is the weight above

@@ -638,14 +638,6 @@ SERIAL_TEST(DryField, PaysNothing)
   EXPECT_GT(water->stable_dt(*all[1], tag), 1e300);
 }
 
-/** Greatest velocity of points over what the weight alone would give them in the time t. */
-double fall(Scene &run, double t)
-{
-  double most = 0.0;
-  for (int i = 0; i < run.n(); i++)
-    for (int d = 0; d < 3; d++) grow(most, run.v()[i][d]);
-  return over_ranks(most) / (9.81 * t);
-}
 const char *const GEOSTATIC = "2.2e8 1000 9810 soil m 0.4 constant 1e-3 geostatic 0.5 1";
 std::string ground(int n, const std::string &water, const std::string &material, double offset)
 {

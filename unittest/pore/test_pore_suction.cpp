@@ -216,14 +216,6 @@ SERIAL_TEST(Infiltration, IntoDrySand)
   EXPECT_LT(std::fabs(depth[1]), 0.7 * std::fabs(depth[0]));
 }
 
-/** Greatest velocity of points over what the weight alone would give them in the time t. */
-double fall(Scene &run, double t)
-{
-  double most = 0.0;
-  for (int i = 0; i < run.n(); i++)
-    for (int d = 0; d < 3; d++) grow(most, run.v()[i][d]);
-  return over_ranks(most) / (9.81 * t);
-}
 const char *const SAND = "2.2e8 1000 9810 soil m 0.4 constant 1e-3 ",
                   *const DRIES = "retention vangenuchten 3e-4 2.2 saturation 0.1 1 ";
 
