@@ -31,6 +31,7 @@
 #include "material/batch_kernels.h"
 #include "material/material.h"
 #include "modify.h"
+#include "root_of.h"
 #include "step/fix_mpm.h"
 #include "update.h"
 #include "variable.h"

@@ -38,17 +38,6 @@ double schiller(double d, double v, double mu)
   return 3.0 * PI * mu * d * v * (1.0 + 0.15 * std::pow(v * d / mu, 0.687));
 }
 
-/** Where a rising function has a value. */
-template <class F> double solve(const F &f, double value)
-{
-  double low = 0.0, high = 100.0;
-  for (int k = 0; k < 80; k++) {
-    const double v = 0.5 * (low + high);
-    (f(v) > value ? high : low) = v;
-  }
-  return low;
-}
-
 /** Gradient of the pressure of spheres per superficial velocity w, by Ergun. */
 double ergun(double d, double w, double mu, double solid)
 {
@@ -102,11 +91,9 @@ SERIAL_TEST(Grain, SinksWithTheTerminalVelocity)
   for (const auto &c :
        {Case{0.2, 1.0, 0.01, false}, Case{0.5, 0.1, 0.05, true}, Case{0.2, 0.01, 0.05, false}}) {
     const double d = c.diameter, mu = c.viscosity, weight = 2.0 * PI / 6.0 * d * d * d;
-    const double law = solve(
-        [&](double v) {
-          return schiller(d, v, mu);
-        },
-        weight);
+    const double law = root_of(0.0, 100.0, [&](double v) {
+      return schiller(d, v, mu) - weight;
+    });
     const std::string move = "fix move grains nve/sphere\n",
                       fluid = flow(strprintf("viscosity %g", mu),
                                    strprintf("%g drag schiller gravity 0 0 -1", mu));

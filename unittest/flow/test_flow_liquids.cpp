@@ -344,14 +344,12 @@ SERIAL_TEST(Shear, Decay)
     const auto k = [&](int of, double lambda) {
       return std::sqrt(lambda * layers.rho[of] / layers.mu[of]);
     };
-    double low = 1e-6, high = std::min(PI * PI / (a * a), 8.0 * PI * PI / (b * b)) - 1e-6;
-    for (int pass = 0; pass < 100; pass++) {
-      const double lambda = 0.5 * (low + high), k1 = k(0, lambda), k2 = k(1, lambda);
-      (layers.mu[0] * k1 / std::tan(k1 * a) + layers.mu[1] * k2 / std::tan(k2 * b) > 0.0 ? low
-                                                                                         : high) =
-          lambda;
-    }
-    const double k1 = k(0, low), k2 = k(1, low), dt = 0.5 / (n * n * 8.0 * 8.0);
+    const double high = std::min(PI * PI / (a * a), 8.0 * PI * PI / (b * b)) - 1e-6;
+    const double lambda = root_of(1e-6, high, [&](double lambda) {
+      const double k1 = k(0, lambda), k2 = k(1, lambda);
+      return layers.mu[0] * k1 / std::tan(k1 * a) + layers.mu[1] * k2 / std::tan(k2 * b);
+    });
+    const double k1 = k(0, lambda), k2 = k(1, lambda), dt = 0.5 / (n * n * 8.0 * 8.0);
     Scene run(replaced(layers.scene(implicit ? "implicit yes" : ""), "fix w",
                        strprintf("variable u atom "
                                  "1e-6*((1-v_up)*sin(%.17g*y)/%.17g+v_up*sin(%.17g*(1-y))/%.17g)\n"
@@ -378,10 +376,11 @@ SERIAL_TEST(Shear, Decay)
         heat += dt * run.lmp->atom->vfrac[i] * std::pow(run.points().tau[i][3], 2) /
             layers.mu[run.x()[i][1] > a];
     });
-    const int nsteps = (int) (1.0 / (low * dt));
+    const int nsteps = (int) (1.0 / (lambda * dt));
     run.commands(strprintf("run %d\n", nsteps));
-    EXPECT_NEAR(measured("rate over theory", std::log(before / amplitude()) / (nsteps * dt * low)),
-                1.0, 0.01);
+    EXPECT_NEAR(
+        measured("rate over theory", std::log(before / amplitude()) / (nsteps * dt * lambda)), 1.0,
+        0.01);
     EXPECT_NEAR(measured("heat over loss of energy",
                          heat / (energy - run.fix("w")->compute_vector(KINETIC))),
                 1.0, 0.02);
@@ -404,12 +403,7 @@ double growth_rate(double k, double g, const double *rho, const double *mu)
     }
     return M.determinant();
   };
-  double low = 1e-3, high = std::sqrt(g * k);
-  for (int turn = 0; turn < 60; turn++) {
-    const double middle = 0.5 * (low + high);
-    ((determinant(middle) > 0.0) == (determinant(low) > 0.0) ? low : high) = middle;
-  }
-  return low;
+  return root_of(1e-3, std::sqrt(g * k), determinant);
 }
 
 // A heavy liquid above a light one of the same viscosity per density, or a tenth.

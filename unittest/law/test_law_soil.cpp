@@ -57,13 +57,12 @@ void consolidate(MaterialPoint &p, double pressure, int n = 20)
     steps(q, isotropic(-strain / 3), 1.0 / n, n);
     return q;
   };
-  double low = 0.0, high = 1e-6;
+  double high = 1e-6;
   while (compress(high).pressure() < pressure) high *= 2.0;
-  for (int it = 0; it < 100; it++) {
-    const double half = 0.5 * (low + high);
-    (compress(half).pressure() < pressure ? low : high) = half;
-  }
-  steps(p, isotropic(-high / 3), 1.0 / n, n);
+  const double strain = root_of(0.0, high, [&](double strain) {
+    return compress(strain).pressure() - pressure;
+  });
+  steps(p, isotropic(-strain / 3), 1.0 / n, n);
   EXPECT_NEAR(p.pressure(), pressure, 1e-9 * pressure);
 }
 

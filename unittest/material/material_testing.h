@@ -10,6 +10,7 @@
 #include "material/material_point.h"
 #include "math/matrix.h"
 #include "patterns.h"
+#include "root_of.h"
 
 #include "gtest/gtest.h"
 
@@ -31,6 +32,7 @@ namespace material_testing {
 using MPM_NS::Batch;
 using MPM_NS::Material;
 using MPM_NS::MaterialPoint;
+using MPM_TEST::root_of;
 
 using Matrix = std::array<double, 9>;
 constexpr Matrix IDENTITY = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -28,16 +28,6 @@ double neohookean(double nu, int k, double a, double b, double c)
   return (mu * (l[k] * l[k] - 1.0) + lambda * std::log(J)) / J;
 }
 
-/** Root of a growing function between low and high. */
-double root(double low, double high, const std::function<double(double)> &f)
-{
-  for (int k = 0; k < 200; k++) {
-    const double middle = 0.5 * (low + high);
-    (f(middle) < 0.0 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
 Matrix diagonal(double a, double b)
 {
   return {a, 0, 0, 0, b, 0, 0, 0, 1};
@@ -49,7 +39,7 @@ TEST(PlaneStress, Surface)
   for (const double nu : {0.0, 0.3, 0.45})
     for (const bool compression : {true, false})
       for (const auto &[a, b] : {std::pair(1.3, 1.1), std::pair(1.2, 1.2), std::pair(2.5, 1.9)}) {
-        const double c = root(1e-3, 10.0, [nu = nu, a = a, b = b](double x) {
+        const double c = root_of(1e-3, 10.0, [nu = nu, a = a, b = b](double x) {
           return neohookean(nu, 2, a, b, x);
         });
         Surface s(rubber(nu), 3, 2, compression);
@@ -81,7 +71,7 @@ TEST(PlaneStress, Balloon)
 TEST(PlaneStress, Wrinkles)
 {
   const double nu = 0.3, a = 1.5;
-  const double width = root(1e-3, 2.0, [&](double x) {
+  const double width = root_of(1e-3, 2.0, [&](double x) {
     return neohookean(nu, 1, a, x, x);
   });
   const double force = neohookean(nu, 0, a, width, width) * width * width;
@@ -146,10 +136,10 @@ TEST(PlaneStress, StressIsTheGradientOfEnergy)
 TEST(PlaneStress, Lines)
 {
   const double nu = 0.3, a = 1.4;
-  const double both = root(1e-3, 2.0, [&](double x) {
+  const double both = root_of(1e-3, 2.0, [&](double x) {
     return neohookean(nu, 1, a, x, x);
   });
-  const double one = root(1e-3, 2.0, [&](double x) {
+  const double one = root_of(1e-3, 2.0, [&](double x) {
     return neohookean(nu, 1, a, x, 1.0);
   });
   Surface cable(rubber(nu), 3, 1, false), strip(rubber(nu), 2, 1, false);
@@ -165,7 +155,7 @@ TEST(PlaneStress, Lines)
   for (auto *line : {&cable, &strip})
     for (const double c : line->go(diagonal(0.7, 1.0))) EXPECT_NEAR(c / E, 0.0, 1e-12);
   Surface truss(rubber(nu), 3, 1, true);
-  const double more = root(0.5, 3.0, [&](double x) {
+  const double more = root_of(0.5, 3.0, [&](double x) {
     return neohookean(nu, 1, 0.7, x, x);
   });
   EXPECT_NEAR(truss.go(diagonal(0.7, 1.0))[0] / neohookean(nu, 0, 0.7, more, more), 1.0, 1e-8);

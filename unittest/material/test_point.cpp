@@ -13,17 +13,6 @@ using namespace material_testing;
 using MPM_NS::MixedControl;
 using MPM_TEST::Scene;
 
-/** Root of a function that changes its sign between two values. */
-double root(const std::function<double(double)> &f, double a, double b)
-{
-  const bool up = f(b) > 0.0;
-  for (int k = 0; k < 200; k++) {
-    const double m = 0.5 * (a + b);
-    ((f(m) > 0.0) == up ? b : a) = m;
-  }
-  return 0.5 * (a + b);
-}
-
 // neo-Hookean solid of the tests: principal Cauchy stress along a stretch
 
 constexpr double E = 2e6, NU = 0.3, MU = E / (2 * (1 + NU)),
@@ -38,11 +27,9 @@ double neohookean(double stretch, double J)
 /** Lateral stretch and axial stress in uniaxial stress with this lateral stress. */
 std::array<double, 2> uniaxial(double stretch, double lateral = 0.0)
 {
-  const double side = root(
-      [=](double s) {
-        return neohookean(s, stretch * s * s) - lateral;
-      },
-      0.2, 3.0);
+  const double side = root_of(0.2, 3.0, [=](double s) {
+    return neohookean(s, stretch * s * s) - lateral;
+  });
   return {side, neohookean(stretch, stretch * side * side)};
 }
 
@@ -230,11 +217,9 @@ TEST(Point, BiaxialAndTriaxial)
 {
   auto t = drive("biaxial 1 strain 0.4 material " + RUBBER);
   const double a = std::exp(0.4);
-  const double thick = root(
-      [=](double s) {
-        return neohookean(s, a * a * s);
-      },
-      0.1, 2.0);
+  const double thick = root_of(0.1, 2.0, [=](double s) {
+    return neohookean(s, a * a * s);
+  });
   EXPECT_NEAR(t["Fzz"].back(), thick, 1e-12);
   EXPECT_NEAR(t["sxx"].back(), neohookean(a, a * a * thick), 1e-10 * E);
   EXPECT_NEAR(t["syy"].back(), t["sxx"].back(), 1e-10 * E);
@@ -244,11 +229,9 @@ TEST(Point, BiaxialAndTriaxial)
   ASSERT_EQ(t["step"].size(), 3);
   EXPECT_EQ(t["step"][0], -100);
   EXPECT_EQ(t["time"][1], 0.0);
-  const double start = root(
-      [=](double s) {
-        return neohookean(s, s * s * s) + P;
-      },
-      0.2, 1.0);
+  const double start = root_of(0.2, 1.0, [=](double s) {
+    return neohookean(s, s * s * s) + P;
+  });
   EXPECT_NEAR(t["Fxx"][1], start, 1e-11);
   EXPECT_NEAR(t["sxx"][1], -P, 1e-10 * E);
   EXPECT_NEAR(t["Fxx"][2], start * std::exp(-0.5), 1e-11);

@@ -375,14 +375,12 @@ TEST(Tangent, OnBothSidesOfYield)
         for (double &value : a) value *= x;
         return a;
       };
-      double low = 0.0, high = 0.1;
-      for (int bisection = 0; bisection < 50; bisection++) {
-        const double x = 0.5 * (low + high);
+      const double yields = root_of(0.0, 0.1, [&](double x) {
         MaterialPoint p(*material);
         make_step(p, {scaled(x)}, 1.0);
-        (p.batch.plastic[0] > 0.0 ? high : low) = x;
-      }
-      A.push_back(scaled(high * (i % 2 ? 1.0 + 1e-4 : 1.0 - 1e-4)));
+        return p.batch.plastic[0];
+      });
+      A.push_back(scaled(yields * (i % 2 ? 1.0 + 1e-4 : 1.0 - 1e-4)));
     }
     MaterialPoint p(*material, BATCH);
     EXPECT_EQ(expect_tangent(p, A, 1.0, 3e-9, 1e-6), 0);

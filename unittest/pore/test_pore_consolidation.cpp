@@ -168,19 +168,14 @@ std::vector<std::array<double, 3>> finite_volumes(const Large &column, double wa
   const auto pressure = [&](double l) {
     return q - column.laws.stress(l);
   };
-  const auto bisection = [](const auto &f) {    // f is positive below the root
-    double low = 0.3, high = 1.0;
-    for (int k = 0; k < 60; k++) (f(0.5 * (low + high)) > 0.0 ? low : high) = 0.5 * (low + high);
-    return low;
-  };
   const auto drained = [&] {
-    return bisection([&](double l) {
+    return root_of(0.3, 1.0, [&](double l) {
       return column.laws.stress(l) - q;
     });
   };
   const double whole = drained();
   double last = whole, growth = 0.0;    // of the load
-  const double first = ramp > 0.0 ? 1.0 : bisection([&](double l) {
+  const double first = ramp > 0.0 ? 1.0 : root_of(0.3, 1.0, [&](double l) {
     return column.n0 * std::exp(-water * pressure(l)) - (l - 1.0 + column.n0);
   });
   std::vector<double> stretch(N, first), p(N), c(N), takes(N), flux(N + 1, 0.0);

@@ -69,13 +69,9 @@ double infiltration(double alpha, double K, double range, double q0, double q1, 
   const double L = alpha, Z = alpha * z, T = alpha * K * t / range;
   double sum = 0.0;
   for (int k = 0; k < 400; k++) {    // tan(x L) = -2 x, in ((k + 1/2) pi/L, (k + 1) pi/L)
-    double low = (k + 0.5) * PI / L, high = (k + 1.0) * PI / L;
-    for (int j = 0; j < 200; j++) {
-      const double x = 0.5 * (low + high);
-      const double f = (std::sin(x * L) + 2.0 * x * std::cos(x * L)) * (k % 2 ? -1.0 : 1.0);
-      (f > 0.0 ? low : high) = x;
-    }
-    const double x = low;
+    const double x = root_of((k + 0.5) * PI / L, (k + 1.0) * PI / L, [=](double x) {
+      return std::sin(x * L) + 2.0 * x * std::cos(x * L);
+    });
     sum += std::sin(x * Z) * std::sin(x * L) * std::exp(-x * x * T) /
         (1.0 + 0.5 * L + 2.0 * x * x * L);
   }

@@ -348,21 +348,17 @@ SERIAL_TEST(Axisymmetric, TubeUnderPressure)
 SERIAL_TEST(Axisymmetric, CylinderSwings)
 {
   const double nu = 0.3, c = sqrt((1 - nu) / ((1 + nu) * (1 - 2 * nu)));
-  double low = 1.0,
-         high = 2.3;    // (k R) J0(k R) = (1 - 2 nu)/(1 - nu) J1(k R), see test_axisymmetric.cpp
-  for (int k = 0; k < 100; k++) {
-    const double x = 0.5 * (low + high),
-                 f = x * std::cyl_bessel_j(0, x) -
-        (1 - 2 * nu) / (1 - nu) * std::cyl_bessel_j(1, x);
-    (f > 0.0 ? low : high) = x;
-  }
+  // (k R) J0(k R) = (1 - 2 nu)/(1 - nu) J1(k R), see test_axisymmetric.cpp
+  const double kR = root_of(1.0, 2.3, [&](double x) {
+    return x * std::cyl_bessel_j(0, x) - (1 - 2 * nu) / (1 - nu) * std::cyl_bessel_j(1, x);
+  });
   const auto error_of = [&](int n, const std::string &options, bool core) {
     const double h = 1.0 / n, dt = 0.15 * h / c;
     Scene run(plane("lj", "f p", strprintf("0 1.25 0 %.17g", 4.0 * h), 2, 0.3 * h) +
               rings(h, options, 0.0, 1.0, 0.5, core) +
               "fix m all mpm/material density 1 linear 1 0.3\nfix ax all mpm/boundary xlo slip\n");
     run.set_velocity([=](const double *r, double *v) {
-      v[0] = 1e-5 * std::cyl_bessel_j(1, low * r[0]);
+      v[0] = 1e-5 * std::cyl_bessel_j(1, kR * r[0]);
     });
     Crossings crossings;
     run.each_step([&](double **) {
@@ -370,11 +366,11 @@ SERIAL_TEST(Axisymmetric, CylinderSwings)
       for (int i = 0; i < run.n(); i++) sum += run.mass()[i] * run.x()[i][0] * run.v()[i][0];
       crossings.add(run.time(), sum);
     });
-    run.commands(strprintf("timestep %.17g\nrun %d\n", dt, (int) (4.8 * PI / (low * c) / dt)));
+    run.commands(strprintf("timestep %.17g\nrun %d\n", dt, (int) (4.8 * PI / (kR * c) / dt)));
     EXPECT_GE(crossings.times.size(), 4u);
     return measured(strprintf("%s: error of the frequency, %d cells, fine %s", options.c_str(), n,
                               core ? "core" : "skin"),
-                    crossings.frequency() / (low * c) - 1.0);
+                    crossings.frequency() / (kR * c) - 1.0);
   };
   for (const bool core : {true, false}) {
     for (const char *options : {"", "frame total"})

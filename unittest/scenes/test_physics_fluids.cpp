@@ -31,11 +31,9 @@ class RiemannSolution {
     const auto velocity_r = [&](double p) {
       return r.u + (p - r.p) * std::sqrt(2 / r.rho / ((g + 1) * p + (g - 1) * r.p));
     };
-    double low = r.p, high = l.p;
-    for (int i = 0; i < 200; i++) {
-      ps = 0.5 * (low + high);
-      (velocity_l(ps) > velocity_r(ps) ? low : high) = ps;
-    }
+    ps = root_of(r.p, l.p, [&](double p) {
+      return velocity_l(p) - velocity_r(p);
+    });
     us = velocity_r(ps);
     rho_l = l.rho * std::pow(ps / l.p, 1 / g);
     const double k = (g - 1) / (g + 1);

@@ -162,13 +162,9 @@ double radiation(double nu)
   const auto rayleigh = [=](double x) {
     return std::pow(2.0 * x * x - 1.0, 2) - 4.0 * x * x * std::sqrt((x * x - g2) * (x * x - 1.0));
   };
-  double low = 1.0 + 1.0e-9, high = 2.0;
-  for (int k = 0; k < 100; k++) {
-    const double middle = 0.5 * (low + high);
-    (rayleigh(middle) * rayleigh(low) > 0.0 ? low : high) = middle;
-  }
-  const double slope = (rayleigh(low + 1.0e-6) - rayleigh(low - 1.0e-6)) / 2.0e-6;
-  return sum + PI * low * std::sqrt(low * low - g2) / std::abs(slope);
+  const double x = root_of(1.0 + 1.0e-9, 2.0, rayleigh),
+               slope = (rayleigh(x + 1.0e-6) - rayleigh(x - 1.0e-6)) / 2.0e-6;
+  return sum + PI * x * std::sqrt(x * x - g2) / std::abs(slope);
 }
 
 TEST(HalfSpace, GrainLosesEnergyToWaves)
