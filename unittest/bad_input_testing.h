@@ -35,15 +35,18 @@ inline std::string answer(const std::string &input)
   return text;
 }
 
-/** The text with the first occurrence of from replaced by to. */
+/** The text with the first occurrence of from replaced by to; of nothing: with to before its last
+ *  run. */
 inline std::string changed(std::string text, const std::string &from, const std::string &to)
 {
+  if (from.empty()) return text.insert(text.rfind("\nrun ") + 1, to + "\n");
   const auto at = text.find(from);
   if (at == std::string::npos) return "no '" + from + "' in the scene";
   return text.replace(at, from.size(), to);
 }
 
-/** A mistake: from, a part of the good scene, is replaced by to. error: pattern of the message. */
+/** A mistake: from, a part of the good scene, is replaced by to, or to comes before the last run if
+ *  from is empty. error: pattern of the message. */
 struct Change {
   std::string name, from, to, error;
   friend void PrintTo(const Change &mistake, std::ostream *out) { *out << mistake.to; }

@@ -31,6 +31,7 @@
 #include "material/batch_kernels.h"
 #include "material/material.h"
 #include "modify.h"
+#include "root_of.h"
 #include "step/fix_mpm.h"
 #include "update.h"
 #include "variable.h"
@@ -49,6 +50,7 @@
 #include <memory>
 #include <mpi.h>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -337,6 +339,14 @@ class Scene {
     return lmp->modify->get_compute_by_id(id)->compute_scalar();
   }
 
+  /** A compute of values for atoms, which are current. */
+  Compute *per_atom(const std::string &id)
+  {
+    auto *compute = lmp->modify->get_compute_by_id(id);
+    compute->compute_peratom();
+    return compute;
+  }
+
   /** State of one point: unwrapped position, Cauchy stress, current volume. */
   struct State {
     double tag, type, x[3], v[3], F[9], stress[6], vol, mass;
@@ -393,6 +403,13 @@ class Scene {
   double **v() { return lmp->atom->v; }
   double *mass() { return lmp->atom->rmass; }
   MPMPoints &points() { return *MPMPoints::get(lmp->atom); }
+  /** Cauchy stress of point i of this rank: xx yy zz xy xz yz. */
+  std::array<double, 6> cauchy(int i)
+  {
+    std::array<double, 6> stress;
+    points().cauchy(i, stress.data());
+    return stress;
+  }
   template <class T = Fix> T *fix(const std::string &id)
   {
     return dynamic_cast<T *>(lmp->modify->get_fix_by_id(id));
@@ -638,6 +655,13 @@ inline double bspline_slope(int order, double u)
   return sign * (a < 1.0 ? -2.0 * a + 1.5 * a * a : (a < 2.0 ? -0.5 * (2.0 - a) * (2.0 - a) : 0.0));
 }
 
+/** Makes largest at least as large as the magnitude of a value; not a number is infinite, while
+ *  std::max passes over it. */
+inline void grow(double &largest, double value)
+{
+  largest = std::max(largest, std::isnan(value) ? INFINITY : std::fabs(value));
+}
+
 /** Shows a measured number in the output of the test, and returns it. */
 inline double measured(const std::string &what, double value)
 {
@@ -742,19 +766,31 @@ struct Twins {
   }
 };
 
+/** The log of these commands. */
+inline std::string log_of(Scene &run, const std::string &commands)
+{
+  const ScratchFile log("said.log");
+  run.commands("log " + log.name + "\n" + commands + "log none\n");
+  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
+  return file_text(log.name);
+}
+
 /** Lines of the log of these commands that contain these words. */
 inline std::vector<std::string> lines_that_say(const std::string &commands,
                                                const std::string &words)
 {
   Scene run;
-  const ScratchFile log("said.log");
-  run.commands("log " + log.name + "\n" + commands + "log none\n");
-  MPI_Barrier(MPI_COMM_WORLD);
+  std::istringstream log(log_of(run, commands));
   std::vector<std::string> lines;
-  std::ifstream file(log.name);
-  for (std::string line; std::getline(file, line);)
+  for (std::string line; std::getline(log, line);)
     if (line.find(words) != std::string::npos) lines.push_back(line);
   return lines;
+}
+
+/** How many lines of the log of these commands contain these words. */
+inline int times_said(const std::string &commands, const std::string &words)
+{
+  return (int) lines_that_say(commands, words).size();
 }
 
 /** The message of the error that an input gives; empty: no error. */

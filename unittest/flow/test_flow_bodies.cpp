@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -10,8 +10,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Entries of the vector of fix mpm/rigid. */
 enum { CENTER = 0, VELOCITY = 3, OMEGA = 6, FORCE = 9, MATRIX = 15 };
 
@@ -20,12 +18,11 @@ double body(Scene &run, int k)
   return run.fix("body")->compute_vector(k);
 }
 
-/** A cylinder or sphere of radius 0.2 in a container of radius 0.47 that is full, released under gravity. */
+/** A cylinder or sphere of radius 0.2 in a full container of radius 0.47, released in gravity. */
 std::string gap(int dim, int n, double density, const char *units, double g, double g_body)
 {
   const char *const center = dim == 3 ? "0.503 0.511 0.49" : "0.503 0.511 0";
-  return box(dim, units, dim == 3 ? "f f f" : "f f", dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1,
-             0.02) +
+  return box(dim, units, "f f f", "0 1 0 1 0 1", 1, 0.02) +
       strprintf("region out sphere %s 0.47 side out\nregion in sphere %s 0.2\n", center, center) +
       strprintf("region a sphere %s 0.2 side out\nregion b sphere %s 0.47\n", center, center) +
       "region fluid intersect 2 a b\n" +
@@ -37,7 +34,7 @@ std::string gap(int dim, int n, double density, const char *units, double g, dou
       strprintf("fix g all gravity %.17g vector 0 -1 0\n", g);
 }
 
-/** Water 0.4 deep in a tank of 2 x 0.8, with a box of 0.4 x 0.2 of half its density about a place that is no node. */
+/** Water 0.4 deep in a tank of 2 x 0.8, a box of 0.4 x 0.2 of half its density off the nodes. */
 std::string boat(double h, double density, double y, const std::string &options)
 {
   const auto hull = strprintf("block 0.8137 1.2137 %.17g %.17g INF INF", y - 0.1, y + 0.1);
@@ -50,10 +47,7 @@ std::string boat(double h, double density, double y, const std::string &options)
       "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.01\n";
 }
 
-}    // namespace
-
-// what is lighter or heavier than water sets this in motion, too: the mass of a body and its added mass, which for a light one is
-// all that there is
+// also what is lighter or heavier than water sets it in motion: mass and added mass
 SERIAL_TEST(Body, IsReleased)
 {
   constexpr double a = 0.2, b = 0.47, g = 9.81;
@@ -87,8 +81,7 @@ SERIAL_TEST(Units, IsReleased)
   }
 }
 
-// what is pushed goes on, in a flow that follows it without friction: it must not be braked by the number of steps, as with apic, which
-// took 15 and 38 % here
+// what is pushed goes on, whatever the number of steps; apic took 15 and 38 % here
 SERIAL_TEST(Body, GoesOn)
 {
   for (const int nsteps : {100, 400}) {
@@ -103,7 +96,7 @@ SERIAL_TEST(Body, GoesOn)
   }
 }
 
-// Archimedes: it goes down as far as its weight is that of the water, with 1.5 and 3 cells in its depth, and nothing moves it then
+// Archimedes: its weight is that of the water, with 1.5 and 3 cells in its depth
 SERIAL_TEST(Boat, Floats)
 {
   for (const double h : {0.04, 0.02}) {
@@ -123,7 +116,7 @@ SERIAL_TEST(Boat, Floats)
   }
 }
 
-// A torque heels it until the water rights it as far: m g (GM + tan^2/2 BM) sin of a box, with GM = BM + KB - KG
+// A torque heels it: m g (GM + tan^2/2 BM) sin of a box, with GM = BM + KB - KG
 SERIAL_TEST(Boat, Heels)
 {
   constexpr double angle = 0.1, B = 0.4, depth = 0.1, BM = B * B / (12.0 * depth);
@@ -149,9 +142,8 @@ TEST(Body, RanksAndRestart)
     const double h = dim == 2 ? 0.05 : 0.1;
     const std::string shape = dim == 2 ? "block 0.3313 0.7092 0.4127 0.6319 INF INF"
                                        : "block 0.3313 0.7092 0.4127 0.6319 0.0711 0.3077";
-    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
-        "region dry " + shape + " side out\nregion water block INF INF INF 0.53 INF INF\n" +
+    const auto scene = box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) + "region dry " + shape +
+        " side out\nregion water block INF INF INF 0.53 INF INF\n" +
         "region fluid intersect 2 water dry\n" +
         strprintf("create_points 1 region fluid spacing %g\n", 0.5 * h);
     const auto fixes = "region shape " + shape +
@@ -190,8 +182,8 @@ SERIAL_TEST(Body, KeepsPointsOut)
   EXPECT_GT(std::fabs(body(run, MATRIX + 3)), 0.01);
 }
 
-// a stone that comes to the floor goes on, and two that meet go through each other, which a warning tells, but once; a piston
-// that is in a wall from the start is one
+// a stone that comes to the floor goes on, and two that meet go through each other, which a warning
+// tells, but once; a piston that is in a wall from the start is one
 SERIAL_TEST(Body, WarnsOfWhatItTouches)
 {
   const std::string say = "touch neither each other nor walls",
@@ -209,16 +201,16 @@ SERIAL_TEST(Body, WarnsOfWhatItTouches)
         "fix w all mpm/incompressible 0.05 1000 region a region b\n" + rest;
   };
   const std::string up = "sphere 0.51 0.71 0 0.12";
-  EXPECT_EQ(lines_that_say(scene("sphere 0.51 0.4 0 0.12", up, 0.3), say).size(), 0u);
+  EXPECT_EQ(times_said(scene("sphere 0.51 0.4 0 0.12", up, 0.3), say), 0);
   const auto floor = lines_that_say(scene("sphere 0.51 0.24 0 0.12", up, 3.0), say);
   ASSERT_EQ(floor.size(), 2u);
   EXPECT_NE(floor[0].find("fix one goes through wall ylo"), std::string::npos);
   EXPECT_NE(floor[1].find("fix two goes through wall yhi"), std::string::npos);
-  EXPECT_EQ(lines_that_say(scene("block 0.38 0.62 -0.1 0.3 INF INF", up, 0.3), say).size(), 0u);
-  EXPECT_EQ(lines_that_say(scene("sphere 0.51 0.44 0 0.12", up, -0.5), say).size(), 2u);    // each
+  EXPECT_EQ(times_said(scene("block 0.38 0.62 -0.1 0.3 INF INF", up, 0.3), say), 0);
+  EXPECT_EQ(times_said(scene("sphere 0.51 0.44 0 0.12", up, -0.5), say), 2);    // each
   // held in a wall from the start, where water comes later
   EXPECT_EQ(
-      lines_that_say(
+      times_said(
           plane("si", "f f", "0 2 0 1", 1, 0.02) +
               "region water block 0 0.5 0 0.6 INF INF\ncreate_points 1 region water spacing 0.025\n"
               "region body block 1.5 2.1 -0.1 0.2 INF INF\n"
@@ -226,9 +218,8 @@ SERIAL_TEST(Body, WarnsOfWhatItTouches)
               "fix w all mpm/incompressible 0.05 1000 region body\n"
               "fix g all gravity 9.81 vector 0 -1 0\nfix d all mpm/dt 0.5 every 1 max 0.01\nrun "
               "100\n",
-          say)
-          .size(),
-      0u);
+          say),
+      0);
 }
 
 SERIAL_TEST(Body, BadInput)

@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi input
 // mpi: 1 3
 
-// Fix mpm/incompressible solver fourier: iterations in boxes and in other shapes, flows against those with multigrid.
+// Fix mpm/incompressible solver fourier: iterations, and flows against those with multigrid.
 
 #include "mpm_lammps.h"
 
@@ -12,13 +12,10 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Entries of the vector of the fix. */
 enum { ITERATIONS, RESIDUAL, DIVERGENCE, FILLED, WET };
 
-/** Points on n cells per length in a box of the given lengths, where the variable wet is not 0, with a flow that is not smooth
- *  and has a divergence. */
+/** Points, n cells per length, in a box, where wet is not 0, with a rough flow and a divergence. */
 std::string water(int dim, const std::string &faces, int n, const std::string &lengths,
                   const std::string &wet)
 {
@@ -62,9 +59,7 @@ std::string splashes()
   return wet;
 }
 
-}    // namespace
-
-// the transforms solve the equations themselves, with walls and periods of even and odd numbers of cells
+// transforms solve the equations, with walls and periods of even and odd numbers of cells
 TEST(Fourier, OneIterationInFullBoxes)
 {
   for (const char *faces : {"p p", "f f", "p f", "f p"})
@@ -78,7 +73,7 @@ TEST(Fourier, OneIterationInFullBoxes)
         << faces;
 }
 
-// the surface is at the edge of the box around the water, up to the part of a cell that its distance differs from one half
+// the surface is at the edge of the box around the water, up to a part of a cell
 TEST(Fourier, FewIterationsInFlatLayers)
 {
   for (const int n : {32, 64})
@@ -90,8 +85,7 @@ TEST(Fourier, FewIterationsInFlatLayers)
   EXPECT_LE(iterations(water(3, "f p f", 12, "0 1 0 1 0 1", "(x>0.46)") + flow(12, SOLVER), 1), 8);
 }
 
-// O7: with cosines for all of the tank, and surfaces a cell away, there are 14, 18, and 22; 15, 19, and 25; 28, 39, and 53.
-// 1.5 times as many are asked for
+// O7: cosines for the whole tank have 14, 18, 22; 15, 19, 25; 28, 39, 53; asked: 1.5 times as many
 TEST(Fourier, IterationsInOtherShapes)
 {
   const std::string shapes[] = {"(y<0.4+0.2*x)", "((x-0.5)^2+(y-0.5)^2<0.09)", splashes()};
@@ -111,7 +105,7 @@ TEST(Fourier, IterationsInOtherShapes)
   }
 }
 
-// flows do not depend on the solver: pools and a drop, a solid region, two liquids, gas, a viscosity
+// flows do not depend on the solver: pools, a drop, a solid region, two liquids, gas, viscosity
 TEST(Fourier, SameFlowAsWithMultigrid)
 {
   const struct {
@@ -135,14 +129,13 @@ TEST(Fourier, SameFlowAsWithMultigrid)
     ASSERT_EQ(states[0].size(), states[1].size());
     double most = 0.0;
     for (std::size_t i = 0; i < states[0].size(); i++)
-      for (int d = 0; d < 2; d++)
-        most = std::max(most, std::fabs(states[0][i].x[d] - states[1][i].x[d]));
+      for (int d = 0; d < 2; d++) grow(most, states[0][i].x[d] - states[1][i].x[d]);
     EXPECT_LT(measured("difference", most), 1e-12) << one.name;
     EXPECT_GT(most, 0.0) << one.name;    // it is another solver
   }
 }
 
-// with parts of the box that move from rank to rank, the iterations are the same, and the flow is to the tolerance
+// parts of the box move from rank to rank: the same iterations, and the flow to the tolerance
 TEST(Fourier, SameOnRanks)
 {
   for (const int dim : {2, 3}) {
@@ -159,7 +152,7 @@ TEST(Fourier, SameOnRanks)
 // closed pools, whose pressures are determined up to constants; a single cell; no water at all
 TEST(Fourier, SmallestFlows)
 {
-  // a wall of no thickness cannot be made of points: two pools at the two ends of a full box with a solid block
+  // points make no wall without thickness: two pools at the ends of a full box with a solid block
   const std::string block = "region block block 0.4 0.6 INF INF INF INF\n";
   const int many = iterations(water(2, "f f", 20, "0 1 0 1", "(x<0.4||x>0.6)") + block +
                               flow(20, SOLVER + " region block"));

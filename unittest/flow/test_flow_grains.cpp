@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Grains of fix mpm/immersed in a flow of fix mpm/incompressible: drag, buoyancy, suspensions, beds.
+// Grains of fix mpm/immersed in fix mpm/incompressible: drag, buoyancy, suspensions, beds.
 
 #include "mpm_lammps.h"
 
@@ -13,8 +13,6 @@
 #include <complex>
 
 using namespace MPM_TEST;
-
-namespace {
 
 /** A box of cells of size 1 that is full of points of type 1, and grains of type 2. */
 std::string full(int dim, const std::string &extent, const std::string &faces,
@@ -34,21 +32,10 @@ std::string flow(const std::string &options, const std::string &laws)
       "\nfix drag grains mpm/immersed w 1.0 " + laws + "\n";
 }
 
-/** Drag on a single sphere (Schiller and Naumann) of the diameter d with the velocity v in a fluid of density 1. */
+/** Drag on a sphere (Schiller and Naumann) of diameter d and velocity v in a fluid of density 1. */
 double schiller(double d, double v, double mu)
 {
   return 3.0 * PI * mu * d * v * (1.0 + 0.15 * std::pow(v * d / mu, 0.687));
-}
-
-/** Where a rising function has a value. */
-template <class F> double solve(const F &f, double value)
-{
-  double low = 0.0, high = 100.0;
-  for (int k = 0; k < 80; k++) {
-    const double v = 0.5 * (low + high);
-    (f(v) > value ? high : low) = v;
-  }
-  return low;
 }
 
 /** Gradient of the pressure of spheres per superficial velocity w, by Ergun. */
@@ -58,8 +45,8 @@ double ergun(double d, double w, double mu, double solid)
   return solid * (150.0 * mu * solid / (d * d) + 1.75 * w / d) * w / cube;
 }
 
-/** Velocity of viscous fluid at a point force F along z which has moved with the velocity v in a periodic box for a time t (C.W. Oseen),
- *  where quadratic splines along z and hats along x and y spread the force and interpolate the velocity. */
+/** Velocity of viscous fluid at a point force F along z that moves with v in a periodic box for a
+ *  time t (C.W. Oseen), spread by quadratic splines along z and hats along x and y. */
 double dragged_along(double F, double v, double mu, double t, const double *box)
 {
   const auto sinc = [](double k) {
@@ -93,10 +80,8 @@ std::string array(int n, const std::string &y, double d, double density,
                 density);
 }
 
-}    // namespace
-
-// A single sphere sinks with the velocity of the law, and with what it drags along of the fluid in its own cells; in steps
-// that are longer than its time of relaxation, too
+// A single sphere sinks with the velocity of the law, and with what it drags along of the fluid in
+// its own cells; in steps that are longer than its time of relaxation, too
 SERIAL_TEST(Grain, SinksWithTheTerminalVelocity)
 {
   struct Case {
@@ -106,11 +91,9 @@ SERIAL_TEST(Grain, SinksWithTheTerminalVelocity)
   for (const auto &c :
        {Case{0.2, 1.0, 0.01, false}, Case{0.5, 0.1, 0.05, true}, Case{0.2, 0.01, 0.05, false}}) {
     const double d = c.diameter, mu = c.viscosity, weight = 2.0 * PI / 6.0 * d * d * d;
-    const double law = solve(
-        [&](double v) {
-          return schiller(d, v, mu);
-        },
-        weight);
+    const double law = root_of(0.0, 100.0, [&](double v) {
+      return schiller(d, v, mu) - weight;
+    });
     const std::string move = "fix move grains nve/sphere\n",
                       fluid = flow(strprintf("viscosity %g", mu),
                                    strprintf("%g drag schiller gravity 0 0 -1", mu));
@@ -134,8 +117,8 @@ SERIAL_TEST(Grain, SinksWithTheTerminalVelocity)
   }
 }
 
-// A closed column of fluid: discs settle with the terminal velocity times eps^4.65 in slow flow (Richardson and Zaki; the exponent is
-// that of Wen and Yu), as the flux of fluid and grains together is zero
+// In a closed column discs settle with the terminal velocity times eps^4.65 in slow flow
+// (Richardson and Zaki; the exponent is that of Wen and Yu)
 SERIAL_TEST(Suspension, IsHindered)
 {
   const double d = 0.05, mu = 0.1, g = 1.0;
@@ -157,7 +140,7 @@ SERIAL_TEST(Suspension, IsHindered)
   }
 }
 
-// A bed that fills half of a periodic column, driven by a force on the fluid: Ergun's law for the flux, in steps of any length
+// A bed in half of a periodic column, driven by a force on the fluid: Ergun's law for the flux
 SERIAL_TEST(Bed, HasThePressureDropOfErgun)
 {
   const double d = 0.25, pull = 0.5, solid = 12.25 * 0.25 * PI * d * d;
@@ -192,8 +175,7 @@ SERIAL_TEST(Bed, DoesNotDependOnTheStep)
   EXPECT_NEAR(measured("flux in long steps / in short ones", flux[1] / flux[0]), 1.0, 1e-3);
 }
 
-// In water at rest a grain feels the weight of what it displaces, to the last digits, and the floor bears it; so do grains on the
-// floor
+// In water at rest a grain feels the weight of what it displaces, and the floor bears both
 SERIAL_TEST(Tank, BearsTheBuoyancy)
 {
   const double d = 0.3, g = 9.81, area = 0.25 * PI * d * d;
@@ -232,8 +214,7 @@ SERIAL_TEST(Grain, GoesWithFluidThatAccelerates)
       1.0, 1e-6);
 }
 
-// What grains get the fluid loses, to round-off: points that are even tell cells their momentum without a difference, so in the
-// first step
+// What grains get the fluid loses, to round-off in the first step, as points are even
 SERIAL_TEST(Grain, KeepsMomentum)
 {
   for (const int dim : {2, 3})
@@ -247,9 +228,8 @@ SERIAL_TEST(Grain, KeepsMomentum)
       Scene run(
           full(dim, "0 8 0 8 0 4", "p p p",
                grains + "set type 2 diameter 0.4 density" + (dim == 2 ? "/disc" : "") + " 3.0\n") +
-          "velocity water set 0.3 -0.2 0 units box\n"
-          "velocity grains create 0.5 4711 loop geom\nvelocity grains set 0.4 0.2 0 sum yes units "
-          "box\nvelocity grains set " +
+          "velocity water set 0.3 -0.2 0 units box\nvelocity grains create 0.5 4711 loop geom\n"
+          "velocity grains set 0.4 0.2 0 sum yes units box\nvelocity grains set " +
           (dim == 2 ? "NULL NULL 0" : "NULL NULL NULL") + "\n" + flow("", laws) +
           (dim == 2 ? discs : "fix move grains nve/sphere\n") + "timestep 0.05\nrun 0\n");
       const auto start = run.sums(), of_grains = run.sums(2);
@@ -258,16 +238,16 @@ SERIAL_TEST(Grain, KeepsMomentum)
       double scale = 0.0, most = 0.0, given = 0.0;
       for (int d = 0; d < dim; d++) {
         scale += std::fabs(of_grains.p[d]);
-        most = std::max(most, std::fabs(now.p[d] - start.p[d]));
-        given = std::max(given, std::fabs(later.p[d] - of_grains.p[d]));
+        grow(most, now.p[d] - start.p[d]);
+        grow(given, later.p[d] - of_grains.p[d]);
       }
       EXPECT_LT(measured(strprintf("%dd, %s: momentum", dim, laws.c_str()), most / scale), 1e-12);
       EXPECT_GT(measured("given", given / scale), 1e-3);
     }
 }
 
-/** A wave between a suspension, 5 % of discs, and the water above or below it in a closed tank with n cells: frequency over that of liquids, of
- *  which one has the density rho + (rho_s - rho) phi. */
+/** A wave between a suspension, 5 % of discs, and the water above or below it in a closed tank with
+ *  n cells: frequency over that of liquids, one of density rho + (rho_s - rho) phi. */
 double wave_of_suspension(int n, double density, const std::string &options)
 {
   const bool heavy = density > 1.0;
@@ -303,7 +283,7 @@ double wave_of_suspension(int n, double density, const std::string &options)
       0.5 * PI / time / w);
 }
 
-// grains weigh what they do in the fluid that they displace: of first order, as the interface is as thick as the mapping of grains
+// grains weigh what they do in the fluid: of first order, by the thickness of the mapping of grains
 SERIAL_TEST(Suspension, WeighsWhatItDoes)
 {
   EXPECT_GT(wave_of_suspension(16, 3.0, ""), 1.1);    // the miss that the manual tells of
@@ -314,7 +294,7 @@ SERIAL_TEST(Suspension, WeighsWhatItDoes)
   EXPECT_NEAR(wave_of_suspension(16, 0.2, "displace yes"), 1.0, 0.08);
 }
 
-// Grains that the flow carries do not make it viscous: a shear wave with many light, stiff ones in it decays as one without
+// Grains that the flow carries, light and stiff ones, do not make it viscous: a shear wave decays
 SERIAL_TEST(Suspension, IsNotViscousByItself)
 {
   double left[2];
@@ -372,7 +352,8 @@ SERIAL_TEST(Units, HaveTheForces)
   }
 }
 
-// A suspension with contacts that falls through a surface: on four ranks, from restart files, and with grains alone in the lists of neighbors
+// A suspension with contacts that falls through a surface: on four ranks, from restart files, and
+// with grains alone in the lists of neighbors
 std::string falling(int dim)
 {
   std::string grains;
@@ -443,8 +424,7 @@ SERIAL_TEST(Bed, IsPassedForEver)
                  "create_atoms 2 single 1.3 2.2 0\nset type 2 diameter 0.1 density/disc 1.0\n") +
             flow("", "0.0 drag none") +
             "velocity water set 1.0 0 0 units box\natom_modify first grains\n"
-            "neigh_modify include grains\ncomm_modify group grains\ntimestep 0.5\nrun 60\n");
-  run.commands("run 1\n");
+            "neigh_modify include grains\ncomm_modify group grains\ntimestep 0.5\nrun 60\nrun 1\n");
   EXPECT_NEAR(measured("displacement", run.evaluate("xcm(water,x)")), 2.0 + 30.5, 1e-6);
 }
 
@@ -479,33 +459,28 @@ SERIAL_TEST(Grain, BadInput)
   for (const auto &[law, mover, warned] :
        {std::tuple{"1.0 0.1", move, 1u}, std::tuple{"1.0 0.1 gravity 0 -1 0", move, 0u},
         std::tuple{"1.0 0.1 gravity 0 1 0", move, 1u}, std::tuple{"1.0 0.1", std::string(), 0u}})
-    EXPECT_EQ(lines_that_say(scene + w + d + law + g + mover + run, say).size(), warned) << law;
-  EXPECT_EQ(lines_that_say(scene + "set type 2 density/disc 1000.0\n" + w + d + "1.0 0.1" + g +
-                               move + run,
-                           say)
-                .size(),
-            0u);
+    EXPECT_EQ(times_said(scene + w + d + law + g + mover + run, say), warned) << law;
+  EXPECT_EQ(
+      times_said(scene + "set type 2 density/disc 1000.0\n" + w + d + "1.0 0.1" + g + move + run,
+                 say),
+      0);
 
-  // a weight of each group of grains is the same as one of all; one that varies is none before the first forces
+  // weights of groups of grains are one of all; one that varies is none before the first forces
   const std::string fits = scene + w + d + "1.0 0.1 gravity 0 -1 0",
                     left = "region left block INF 2 INF INF INF INF\n"
                            "group left region left\ngroup right subtract all left\n";
   EXPECT_EQ(
-      lines_that_say(
+      times_said(
           fits + "\n" + left +
               "fix g left gravity 1.0 vector 0 -1 0\nfix g2 right gravity 1.0 vector 0 -1 0\n" +
               move + run,
-          say)
-          .size(),
-      0u);
-  EXPECT_EQ(lines_that_say(
-                fits + "\n" + left + "fix g right gravity 2.0 vector 0 -1 0\n" + move + run, say)
-                .size(),
-            1u);
-  EXPECT_EQ(lines_that_say(fits +
-                               "\nvariable g equal 2*time\nfix g all gravity v_g vector 0 -1 0\n" +
-                               move + run + "run 1\n",
-                           say)
-                .size(),
-            0u);
+          say),
+      0);
+  EXPECT_EQ(
+      times_said(fits + "\n" + left + "fix g right gravity 2.0 vector 0 -1 0\n" + move + run, say),
+      1);
+  EXPECT_EQ(times_said(fits + "\nvariable g equal 2*time\nfix g all gravity v_g vector 0 -1 0\n" +
+                           move + run + "run 1\n",
+                       say),
+            0);
 }

@@ -1,16 +1,14 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Points of fix mpm/emit that come into a flow of fix mpm/incompressible, and those that fix mpm/absorb takes away.
+// Points that fix mpm/emit adds to a flow of fix mpm/incompressible, or fix mpm/absorb takes away.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 enum { DIVERGENCE = 2, FLOOR = 9 };    // of the vector of the flow
 
@@ -41,7 +39,7 @@ std::string channel(int dim, int axis, int side, const std::string &options,
       "\nfix out all mpm/absorb region out\ntimestep 0.8\n";
 }
 
-/** Water 0.6 deep in a tank of 1 x 1 m, which rises by what comes out of an inlet in it or above. */
+/** Water .6 deep in a tank of 1 x 1 m that rises by what comes out of an inlet in it or above. */
 std::string filled(double h, const char *inlet, const char *velocity,
                    const std::string &options = "")
 {
@@ -55,10 +53,7 @@ std::string filled(double h, const char *inlet, const char *velocity,
       "\nfix g all gravity 9.81 vector 0 -1 0\n";
 }
 
-}    // namespace
-
-// A channel that is as wide as its inlet: all points have the velocity of the inflow, to the last digits, and as much goes as
-// comes; in all directions
+// A channel as wide as its inlet: all points have the velocity of the inflow, in all directions
 SERIAL_TEST(Channel, IsSteady)
 {
   for (const int dim : {2, 3})
@@ -76,14 +71,14 @@ SERIAL_TEST(Channel, IsSteady)
         double worst = 0.0;
         for (const auto &s : run.gather())
           for (int d = 0; d < dim; d++)
-            worst = std::max(worst, std::fabs(s.v[d] - (d == axis ? (side ? 0.37 : -0.37) : 0.0)));
+            grow(worst, s.v[d] - (d == axis ? (side ? 0.37 : -0.37) : 0.0));
         EXPECT_LT(
             measured(strprintf("%dd, axis %d, side %d: worst velocity", dim, axis, side), worst),
             1e-10);
       }
 }
 
-// An inlet that covers 5.5 of 8 cells: behind it, the mean velocity is less by as much from the first steps on
+// An inlet that covers 5.5 of 8 cells: behind it, the mean velocity is less by as much at once
 SERIAL_TEST(Channel, IsWiderThanItsInlet)
 {
   Scene run(
@@ -103,7 +98,7 @@ SERIAL_TEST(Channel, IsWiderThanItsInlet)
   EXPECT_LT(measured("divergence", run.fix("w")->compute_vector(DIVERGENCE)), 1e-6);
 }
 
-// A channel between regions that cut cells in the middle: as much flows as comes, and not what is left of it in cut cells
+// A channel between regions that cut cells in the middle: as much flows as comes
 SERIAL_TEST(Channel, BetweenRegions)
 {
   Scene run(
@@ -122,7 +117,7 @@ SERIAL_TEST(Channel, BetweenRegions)
   EXPECT_NEAR(measured("mean velocity / inflow", sum / n / 0.37), 1.0, 0.005);
 }
 
-// With friction at its walls, the flow in the channel becomes that of Poiseuille, of the rate that comes
+// With friction at its walls, the flow in the channel becomes Poiseuille's, of the rate that comes
 SERIAL_TEST(Channel, BecomesPoiseuille)
 {
   for (const char *viscosity : {"400.0", "1e6 implicit yes"}) {
@@ -146,8 +141,7 @@ SERIAL_TEST(Channel, BecomesPoiseuille)
   }
 }
 
-// What comes out of an inlet makes the water rise by its volume: at a wall below the surface, amid the water, and from above; the
-// section is no multiple of cells
+// What comes out of an inlet, at a wall, amid the water, or from above, makes it rise by its volume
 SERIAL_TEST(Tank, Rises)
 {
   struct Case {
@@ -213,7 +207,7 @@ SERIAL_TEST(Tank, BearsWhatIsPoured)
               1.0, 0.02);
 }
 
-// A sheet of honey that hangs from its inlet: what has come by the time s bears its weight from then on, and stretches by
+// A sheet of honey hangs from its inlet: what came at the time s bears its weight, and stretches by
 // 4 mu (Trouton), so that it is 1/(1 - b s (t - s)) times as long at t, b = rho g U/(4 mu)
 SERIAL_TEST(Sheet, HangsFromItsInlet)
 {
@@ -277,8 +271,7 @@ SERIAL_TEST(Channel, BadInput)
 {
   const auto plain = plane("si", "f f", "0 1 0 1", 1, 0.02) +
       "region low block INF INF 0 0.4 INF INF\ncreate_points 1 region low spacing 0.025\n"
-      "region inlet block 0.4 0.6 0.7 0.9 INF INF\n"
-      "region short block 0.4 0.6 0 0.03 INF INF\n";
+      "region inlet block 0.4 0.6 0.7 0.9 INF INF\nregion short block 0.4 0.6 0 0.03 INF INF\n";
   const std::string flow = "fix w all mpm/incompressible 0.05 1000 ",
                     emit = "\nfix in all mpm/emit 1 region inlet velocity 0 -1 0";
   expect_refused(
@@ -299,9 +292,8 @@ SERIAL_TEST(Channel, BadInput)
       "timestep 0.001\nrun 1\n");
   // no surface, no way out
   const auto full = plane("si", "f f", "0 1 0 0.4", 1, 0.02) +
-      "region water block 0.2 1 INF INF INF INF\ncreate_points 1 region water spacing "
-      "0.025\nregion inlet block 0 0.2 0 0.4 INF INF\n"
-      "fix in all mpm/emit 1 region inlet velocity 0.1 0 0\nfix w all mpm/incompressible 0.05 "
-      "1000\n";
+      "region water block 0.2 1 INF INF INF INF\ncreate_points 1 region water spacing 0.025\n"
+      "region inlet block 0 0.2 0 0.4 INF INF\nfix in all mpm/emit 1 region inlet velocity 0.1 0 "
+      "0\nfix w all mpm/incompressible 0.05 1000\n";
   expect_refused(full, {{"timestep 0.01", "no room for what fix mpm/emit brings"}}, "run 2\n");
 }

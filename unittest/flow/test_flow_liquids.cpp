@@ -1,13 +1,13 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 3 4
 
-// Liquids of several densities and viscosities in fix mpm/incompressible: layers at rest, waves between them, layers that turn over,
-// and shear of layers; with bodies that float between them, and with inflow.
+// Liquids of several densities and viscosities in fix mpm/incompressible: layers at rest, that turn
+// over, and that are sheared; waves; bodies between them; inflow.
 
-#include "mpm_lammps.h"
+#include "wave_testing.h"
 
 #include "group.h"
 
@@ -15,11 +15,9 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { ITERATIONS = 0, FILLED = 3, KINETIC = 5, FASTEST = 6, YLO = 9, STRESS = 13 };
 
-/** A closed square of two layers, whose interface has the shape a cos(pi x); the lower one has the density below. */
+/** A closed square of two layers with the interface a cos(pi x), the lower one of density below. */
 std::string layers(int n, double below, double above, double a)
 {
   const double s = 2.0 * std::sinh(PI / 2);
@@ -56,17 +54,14 @@ double wave(int n, double below, double above)
 {
   const double w = frequency(below, above), dt = 2.0 * PI / (200.0 * w);
   Scene run(layers(n, below, above, 0.02) + strprintf("timestep %.17g\n", dt));
-  std::vector<double> zeros;
-  double before = 0.0;
+  Crossings flat;
   run.each_step([&](double **) {
-    const double now = amplitude(run);
-    if (before * now < 0.0) zeros.push_back(run.time() - dt * now / (now - before));
-    before = now;
+    flat.add(run.time(), amplitude(run));
   });
   run.commands("run 165\n");
-  EXPECT_EQ(zeros.size(), 2u);
+  EXPECT_EQ(flat.times.size(), 2u);
   return measured(strprintf("%d cells, %g to %g: frequency over theory", n, below, above),
-                  PI / (zeros.back() - zeros.front()) / w);
+                  flat.frequency() / w);
 }
 
 /** Two layers between plates that are 1 apart, one of which is as thick as so many of n cells. */
@@ -94,15 +89,15 @@ struct Layers {
                       1.0 / n, rho[0], mu[0], rho[1], mu[1], upper, upper);
     return text + wall + " " + options + "\n";
   }
-  /** Velocity of the steady flow at y with this shear stress at the lower plate and weight along the plates. */
+  /** Velocity of the steady flow at y with this stress at the lower plate and weight along them. */
   double steady(double y, double stress, double g) const
   {
     const double low = std::min(y, interface()), more = y - low, above = stress - rho[0] * g * low;
     return (stress * low - 0.5 * rho[0] * g * low * low) / mu[0] +
         (above * more - 0.5 * rho[1] * g * more * more) / mu[1];
   }
-  /** Root mean square of the error of velocities over that of the velocities, for this speed of the upper plate; and the largest
-   *  error of shear stresses over that at the lower plate. */
+  /** Root mean square of the error of velocities over that of the velocities, for this speed of the
+   *  upper plate; and the largest error of shear stresses over that at the lower plate. */
   std::array<double, 2> errors(Scene &run, double speed, double g) const
   {
     const double at_rest = steady(1.0, 0.0, g),
@@ -114,14 +109,14 @@ struct Layers {
       square += exact * exact;
       const double here = stress -
           g * (rho[0] * std::min(y, interface()) + rho[1] * std::max(0.0, y - interface()));
-      worst = std::max(worst, std::fabs(run.points().tau[i][3] - here));
+      grow(worst, run.points().tau[i][3] - here);
     }
     return {std::sqrt(sum / square), worst / std::fabs(stress)};
   }
 };
 
-/** Two liquids between a cylinder of radius 0.2 that turns and one of radius 0.45, with a round interface: root mean square of the
- *  error of velocities over that of the velocities. */
+/** Two liquids between a cylinder of radius 0.2 that turns and one of radius 0.45, with a round
+ *  interface: root mean square of the error of velocities over that of the velocities. */
 double between_cylinders(int n, double inner, double outer)
 {
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.01) +
@@ -150,8 +145,8 @@ double between_cylinders(int n, double inner, double outer)
                   std::sqrt(sum / square));
 }
 
-/** Mean velocity over that of theory in a round pipe of radius 1 with a core of another liquid of radius 0.6, whose weight drives
- *  them; the outer liquid has the density 1000. */
+/** Mean velocity over that of theory in a round pipe of radius 1 with a core of another liquid of
+ *  radius 0.6, whose weight drives them; the outer liquid has the density 1000. */
 double core_in_pipe(int n, double inner, double outer, double density)
 {
   constexpr double x0 = 0.017, y0 = 0.031, c = 0.6, G = 1e-9;
@@ -184,22 +179,19 @@ std::string column(const std::string &options, double fraction, double max)
 {
   return plane("si", "f f", "0 1 0 1", 1, 0.02) +
       "create_points 1 box spacing 0.025\nregion low block INF 0.4 INF 0.6 INF INF\n"
-      "group low region low\ngroup air subtract all low\n"
-      "fix w all mpm/incompressible 0.05 1000 " +
+      "group low region low\ngroup air subtract all low\nfix w all mpm/incompressible 0.05 1000 " +
       options +
       strprintf("\nfix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt %g max %g\nrun 0\n",
                 fraction, max);
 }
 
-/** Largest relative growth of the energy of points in a step; and the most iterations for pressure and stresses. */
+/** Largest relative growth of energy in a step; most iterations for pressure and stresses. */
 double energy_growth(Scene &run, int nsteps, double *iterations)
 {
   double before = 1e30, most = 0.0;
   run.each_step([&](double **) {
-    double now = 0.0;
-    for (int i = 0; i < run.n(); i++)
-      now += run.lmp->atom->rmass[i] *
-          (0.5 * (std::pow(run.v()[i][0], 2) + std::pow(run.v()[i][1], 2)) + 9.81 * run.x()[i][1]);
+    const auto s = run.sums();
+    const double now = s.kinetic + 9.81 * s.mass * s.x[1];
     most = std::max(most, now / before - 1.0);
     before = now;
     iterations[0] = std::max(iterations[0], run.fix("w")->compute_vector(ITERATIONS));
@@ -222,14 +214,11 @@ std::string between(double h, const std::string &fixes)
       "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.01\n";
 }
 
-}    // namespace
-
 // oil over water at rest, with a free surface: what both weigh is on the floor
 SERIAL_TEST(Liquids, AtRest)
 {
   for (const int dim : {2, 3}) {
-    Scene run(box(dim, "si", dim == 3 ? "f f p" : "f f", dim == 3 ? "0 1 0 1 0 0.2" : "0 1 0 1", 1,
-                  0.01) +
+    Scene run(box(dim, "si", "f f p", "0 1 0 1 0 0.2", 1, 0.01) +
               "region d block INF INF INF 0.8375 INF INF\ncreate_points 1 region d spacing 0.025\n"
               "region high block INF INF 0.43 INF INF INF\ngroup oil region high\n"
               "fix w all mpm/incompressible 0.05 1000 liquid oil 850 tolerance 1e-12\n"
@@ -263,7 +252,7 @@ SERIAL_TEST(Liquids, TurnOver)
   EXPECT_NEAR(measured("rate over theory", std::acosh(amplitude(run) / before) / 2.0), 1.0, 0.05);
 }
 
-// a column of water collapses under a fluid that is a thousand times lighter: its energy never grows
+// a column of water collapses under a fluid a thousand times lighter: its energy never grows
 SERIAL_TEST(Liquids, LightAndHeavy)
 {
   Scene run(column("liquid air 1", 0.4, 0.01));
@@ -274,8 +263,8 @@ SERIAL_TEST(Liquids, LightAndHeavy)
   EXPECT_LT(measured("speed", run.fix("w")->compute_vector(FASTEST)), 20.0);
 }
 
-// The shear stress is the same in both layers, so that the velocity is right wherever their interface is in a cell, along both axes;
-// at the middle of cells, where points interpolate, it has a kink
+// One shear stress in both layers: the velocity is right wherever their interface is in a cell,
+// along both axes; at the middle of cells, where points interpolate, it has a kink
 SERIAL_TEST(Shear, Couette)
 {
   constexpr double speed = 1e-9;
@@ -309,7 +298,7 @@ SERIAL_TEST(Shear, Couette)
         }
 }
 
-// explicit steps, from rest; a tenth of the largest viscosity over density limits them as it does one liquid
+// explicit steps, from rest: a tenth of the largest viscosity over density limits them
 SERIAL_TEST(Shear, ExplicitCouette)
 {
   constexpr double speed = 1e-9;
@@ -344,8 +333,7 @@ SERIAL_TEST(Shear, Poiseuille)
     }
 }
 
-// A wave of shear in two layers decays as theory says, by what friction takes from it: with u = sin(k y) in each, lambda = nu k^2, and
-// one stress
+// A wave of shear in two layers: u = sin(k y) in each, lambda = nu k^2, and one stress
 SERIAL_TEST(Shear, Decay)
 {
   LONG_CASE();
@@ -356,14 +344,12 @@ SERIAL_TEST(Shear, Decay)
     const auto k = [&](int of, double lambda) {
       return std::sqrt(lambda * layers.rho[of] / layers.mu[of]);
     };
-    double low = 1e-6, high = std::min(PI * PI / (a * a), 8.0 * PI * PI / (b * b)) - 1e-6;
-    for (int pass = 0; pass < 100; pass++) {
-      const double lambda = 0.5 * (low + high), k1 = k(0, lambda), k2 = k(1, lambda);
-      (layers.mu[0] * k1 / std::tan(k1 * a) + layers.mu[1] * k2 / std::tan(k2 * b) > 0.0 ? low
-                                                                                         : high) =
-          lambda;
-    }
-    const double k1 = k(0, low), k2 = k(1, low), dt = 0.5 / (n * n * 8.0 * 8.0);
+    const double high = std::min(PI * PI / (a * a), 8.0 * PI * PI / (b * b)) - 1e-6;
+    const double lambda = root_of(1e-6, high, [&](double lambda) {
+      const double k1 = k(0, lambda), k2 = k(1, lambda);
+      return layers.mu[0] * k1 / std::tan(k1 * a) + layers.mu[1] * k2 / std::tan(k2 * b);
+    });
+    const double k1 = k(0, lambda), k2 = k(1, lambda), dt = 0.5 / (n * n * 8.0 * 8.0);
     Scene run(replaced(layers.scene(implicit ? "implicit yes" : ""), "fix w",
                        strprintf("variable u atom "
                                  "1e-6*((1-v_up)*sin(%.17g*y)/%.17g+v_up*sin(%.17g*(1-y))/%.17g)\n"
@@ -390,19 +376,20 @@ SERIAL_TEST(Shear, Decay)
         heat += dt * run.lmp->atom->vfrac[i] * std::pow(run.points().tau[i][3], 2) /
             layers.mu[run.x()[i][1] > a];
     });
-    const int nsteps = (int) (1.0 / (low * dt));
+    const int nsteps = (int) (1.0 / (lambda * dt));
     run.commands(strprintf("run %d\n", nsteps));
-    EXPECT_NEAR(measured("rate over theory", std::log(before / amplitude()) / (nsteps * dt * low)),
-                1.0, 0.01);
+    EXPECT_NEAR(
+        measured("rate over theory", std::log(before / amplitude()) / (nsteps * dt * lambda)), 1.0,
+        0.01);
     EXPECT_NEAR(measured("heat over loss of energy",
                          heat / (energy - run.fix("w")->compute_vector(KINETIC))),
                 1.0, 0.02);
   }
 }
 
-/** Growth of the wave with the wave number k between half spaces (S. Chandrasekhar, Hydrodynamic and Hydromagnetic Stability,
- *  1961, chapter X): the solution n of the conditions at the interface, for velocities A exp(-k |y|) + B exp(-q |y|) on each
- *  side. rho, mu: below, above. */
+/** Growth of the wave with the wave number k between half spaces (S. Chandrasekhar, Hydrodynamic
+ *  and Hydromagnetic Stability, 1961, chapter X): the solution n of the conditions at the
+ *  interface, for velocities A exp(-k |y|) + B exp(-q |y|) on each side. rho, mu: below, above. */
 double growth_rate(double k, double g, const double *rho, const double *mu)
 {
   const auto determinant = [&](double n) {
@@ -416,15 +403,10 @@ double growth_rate(double k, double g, const double *rho, const double *mu)
     }
     return M.determinant();
   };
-  double low = 1e-3, high = std::sqrt(g * k);
-  for (int turn = 0; turn < 60; turn++) {
-    const double middle = 0.5 * (low + high);
-    ((determinant(middle) > 0.0) == (determinant(low) > 0.0) ? low : high) = middle;
-  }
-  return low;
+  return root_of(1e-3, std::sqrt(g * k), determinant);
 }
 
-// A heavy liquid above a light one whose viscosity is the same per density, or a tenth: waves grow as they should.
+// A heavy liquid above a light one of the same viscosity per density, or a tenth.
 SERIAL_TEST(Shear, GrowthOfWaves)
 {
   constexpr int N = 16;
@@ -470,8 +452,8 @@ SERIAL_TEST(Shear, CoreInPipe)
   EXPECT_NEAR(core_in_pipe(8, 10.0, 1.0, 1000.0), 1.0, 0.01);
 }
 
-// honey in a fluid that is a thousand times lighter and thinner: the equations converge, and energy never grows; with explicit steps at
-// the limit of fix mpm/dt, too
+// honey in a fluid that is a thousand times lighter and thinner: the equations converge, and energy
+// never grows; with explicit steps at the limit of fix mpm/dt, too
 SERIAL_TEST(Shear, ThickAndThin)
 {
   for (const char *options : {"viscosity 10 implicit yes liquid air 1 0.01",
@@ -531,9 +513,7 @@ SERIAL_TEST(Inflow, HasItsDensity)
   double worst = 0.0, mass = 0.0;
   for (int i = 0; i < run.n(); i++) {
     const bool in = run.lmp->atom->mask[i] & oil;
-    worst = std::max(
-        worst,
-        std::fabs(run.lmp->atom->rmass[i] / run.lmp->atom->vfrac[i] - (in ? 800.0 : 1000.0)));
+    grow(worst, run.lmp->atom->rmass[i] / run.lmp->atom->vfrac[i] - (in ? 800.0 : 1000.0));
     if (in) mass += run.lmp->atom->rmass[i];
   }
   EXPECT_LT(worst, 1e-9);
@@ -546,8 +526,7 @@ TEST(Liquids, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
     const double h = dim == 2 ? 0.05 : 0.1;
-    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+    const auto scene = box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
         "region d block INF INF INF 0.81 INF INF\n" +
         strprintf("create_points 1 region d spacing %g\n", 0.5 * h) +
         "region low block INF 0.4 INF 0.6 INF INF\ngroup low region low\ngroup high subtract all "
@@ -593,7 +572,6 @@ SERIAL_TEST(Liquids, BadInput)
   // a group that is empty, as its points were made later, is told of once; one that has some is not
   const std::string last = " 800\ntimestep 0.001\nrun 1\nrun 1\n",
                     say = "keyword liquid has no points of this fix";
-  EXPECT_EQ(lines_that_say(plain + "group oil empty\n" + fix + "liquid oil" + last, say).size(),
-            1u);
-  EXPECT_EQ(lines_that_say(plain + "group oil id 1\n" + fix + "liquid oil" + last, say).size(), 0u);
+  EXPECT_EQ(times_said(plain + "group oil empty\n" + fix + "liquid oil" + last, say), 1);
+  EXPECT_EQ(times_said(plain + "group oil id 1\n" + fix + "liquid oil" + last, say), 0);
 }

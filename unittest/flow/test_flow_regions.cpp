@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -11,8 +11,6 @@
 #include "flow/fix_mpm_incompressible.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 /** Entries of the vector of the fix; from REGIONS on three for each region. */
 enum { FILLED = 3, KINETIC = 5, FASTEST, WALLS, REGIONS = 14 };
@@ -26,10 +24,9 @@ double entry(Scene &run, int k)
 std::string floor_and_ball(int dim, int n, const std::string &options)
 {
   const double h = 1.0 / n;
-  return box(dim, "si", dim == 3 ? "f f f" : "f f", dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1, 0.02) +
+  return box(dim, "si", "f f f", "0 1 0 1 0 1", 1, 0.02) +
       (dim == 3
-           ? "region ramp plane 0.5 0.2131 0.5 0.3 -1 0.1\n"
-             "region ball sphere 0.6 0.46 0.47 0.143\n"
+           ? "region ramp plane 0.5 0.2131 0.5 0.3 -1 0.1\nregion ball sphere 0.6 0.46 0.47 0.143\n"
            : "region ramp plane 0.5 0.2131 0 0.3 -1 0\nregion ball sphere 0.6 0.46 0 0.143\n") +
       "region solid union 2 ramp ball side out\nregion water block INF INF INF 0.7 INF INF\n"
       "region fluid intersect 2 water solid\n" +
@@ -38,11 +35,12 @@ std::string floor_and_ball(int dim, int n, const std::string &options)
       "\nfix g all gravity 9.81 vector 0 -1 0\n";
 }
 
-/** Water between a cylinder or sphere of radius 0.2, which begins to move with the speed 0.1, and a container of radius 0.47. */
+/** Water between a cylinder or sphere of radius 0.2, which begins to move with the speed 0.1, and a
+ *  container of radius 0.47. */
 std::string gap(int dim, int n, double dt)
 {
   const char *const center = dim == 3 ? "0.503 0.511 0.49" : "0.503 0.511 0";
-  return box(dim, "si", dim == 3 ? "f f f" : "f f", dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1, 0.02) +
+  return box(dim, "si", "f f f", "0 1 0 1 0 1", 1, 0.02) +
       strprintf("variable dx equal vdisplace(0,0.1)\nregion out sphere %s 0.47 side out\n",
                 center) +
       strprintf("region in sphere %s 0.2 move v_dx NULL NULL\n", center) +
@@ -67,9 +65,7 @@ std::string canal(int n, double angle)
       "fix g all gravity 9.81 vector 0 -1 0\n";
 }
 
-}    // namespace
-
-// water at rest over a floor that is no plane of nodes stays at rest, and carries what it should; Archimedes
+// water over a floor that is no plane of nodes stays at rest, with its pressure; Archimedes
 SERIAL_TEST(Regions, AtRest)
 {
   for (const int dim : {2, 3}) {
@@ -82,8 +78,7 @@ SERIAL_TEST(Regions, AtRest)
       worst = std::max(worst,
                        std::fabs(-run.points().tau[i][1] / 9810.0 - (0.7 - run.x()[i][1])) / 0.7);
     EXPECT_LT(measured("pressure", worst), 1e-11);
-    const double above =
-        0.7 - 0.2131 - (dim == 3 ? 0.0 : 0.0);    // height over the middle of the floor
+    const double above = 0.7 - 0.2131;    // the middle of the floor
     EXPECT_NEAR(entry(run, REGIONS + 1) / (-9810.0 * above), 1.0, dim == 2 ? 1e-10 : 0.01);
     const double r = 0.143, ball = dim == 3 ? 4.0 / 3.0 * PI * r * r * r : PI * r * r;
     EXPECT_NEAR(measured("buoyancy", entry(run, REGIONS + 4) / (9810.0 * ball)), 1.0,
@@ -92,7 +87,7 @@ SERIAL_TEST(Regions, AtRest)
   }
 }
 
-// what is in the way of a cylinder or sphere that begins to move: potential flow in the gap, and its added mass
+// a cylinder or sphere that begins to move: potential flow in the gap, and its added mass
 SERIAL_TEST(Regions, PotentialFlow)
 {
   constexpr double a = 0.2, b = 0.47, U = 0.1, dt = 1e-6;
@@ -182,18 +177,16 @@ TEST(Regions, RanksAndRestart)
   for (const int dim : {2, 3}) {
     const double h = dim == 2 ? 0.05 : 0.1;
     const std::string ball = dim == 2 ? "0.5 0.3 0 0.17" : "0.5 0.3 0.2 0.17";
-    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
-        "region dry sphere " + ball + " side out\nregion water block INF INF INF 0.53 INF INF\n" +
+    const auto scene = box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) + "region dry sphere " +
+        ball + " side out\nregion water block INF INF INF 0.53 INF INF\n" +
         "region slope plane 0.5 0.05 0 0.1 -1 0 side out\nregion fluid intersect 3 water dry "
         "slope\n" +
         strprintf("create_points 1 region fluid spacing %g\n", 0.5 * h);
     const auto fixes = "variable d equal 0.1*sin(5*step*0.004)\nregion ball sphere " + ball +
         " move v_d NULL NULL\nregion ramp plane 0.5 0.05 0 0.1 -1 0\n" +
         strprintf("fix w all mpm/incompressible %g 1000 ", h) +
-        "region ball region ramp reflect 0.5 tolerance 1e-11\nfix g all gravity 9.81 vector 0 -1 "
-        "0\n"
-        "timestep 0.004\n";
+        "region ball region ramp reflect 0.5 tolerance 1e-11\n"
+        "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.004\n";
     OnRanks run(scene + fixes, "run 30\n", "fix b all balance 5 1.05 shift xy 10 1.05\n");
     EXPECT_LT(measured("difference", run.difference()), 1e-9);
     for (int k = REGIONS; k < REGIONS + 6; k++) {
@@ -210,8 +203,8 @@ TEST(Regions, RanksAndRestart)
   }
 }
 
-// A container that is moved pushes on its water with the force that accelerates it, in each step, wherever walls are in their cells: full, and with
-// a surface that is inclined by the acceleration over the weight; at a constant speed with no force
+// A container that is moved pushes on its water with the force that accelerates it, wherever walls
+// are in their cells: full, and with an inclined surface
 SERIAL_TEST(Regions, MovedTank)
 {
   struct Case {
@@ -275,9 +268,8 @@ SERIAL_TEST(Regions, PointsStayOutside)
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.02) +
             "region dry block 0.35 0.65 0.2 0.3 INF INF side out\n"
             "region water block INF INF INF 0.6 INF INF\nregion fluid intersect 2 water dry\n"
-            "create_points 1 region fluid spacing 0.0125\n"
-            "variable angle equal ramp(0,3)\nregion blade block 0.35 0.65 0.2 0.3 INF INF rotate "
-            "v_angle 0.5 0.25 0 0 0 1\n"
+            "create_points 1 region fluid spacing 0.0125\nvariable angle equal ramp(0,3)\n"
+            "region blade block 0.35 0.65 0.2 0.3 INF INF rotate v_angle 0.5 0.25 0 0 0 1\n"
             "fix w all mpm/incompressible 0.025 1000 region blade\n"
             "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.002\n");
   const double volume = 0.57;
@@ -315,18 +307,16 @@ SERIAL_TEST(Regions, BadInput)
         "cannot be used with tension"},
        {"variable r equal 0.01\nregion b sphere 0.5 0.5 0 v_r\n" + fix + "region b",
         "must not change"},
-       {"variable d equal 0.0\nregion a sphere 0.51 0.51 0 0.01 move v_d NULL "
-        "NULL\nregion c sphere 0.41 0.41 0 "
-        "0.01\nregion b union 2 a c\n" +
+       {"variable d equal 0.0\nregion a sphere 0.51 0.51 0 0.01 move v_d NULL NULL\n"
+        "region c sphere 0.41 0.41 0 0.01\nregion b union 2 a c\n" +
             fix + "region b",
         "must not move"}},
       "timestep 0.001\nrun 1\n");
   const auto plate = plane("si", "f f", "0 1 0 1", 1, 0.02) +
       "region plate block 0.41 0.43 0.2 0.8 INF INF\nregion dry block 0.41 0.43 0.2 0.8 INF INF "
-      "side out\n"
-      "create_points 1 region dry spacing 0.05\n" +
+      "side out\ncreate_points 1 region dry spacing 0.05\n" +
       fix + "region plate\ntimestep 0.001\nrun 1\n";
-  EXPECT_EQ(lines_that_say(plate, "thinner than a node spacing").size(), 1u);
+  EXPECT_EQ(times_said(plate, "thinner than a node spacing"), 1);
   // a corner ends in a cell, but no flow goes through a block
   for (const double x : {0.515, 0.535, 0.555, 0.575}) {
     std::string turned = plane("si", "f f", "0 1 0 1", 1, 0.02);
@@ -338,7 +328,7 @@ SERIAL_TEST(Regions, BadInput)
     turned += "region turned intersect 4 p0 p1 p2 p3\nregion dry intersect 4 p0 p1 p2 p3 side "
               "out\ncreate_points 1 region dry spacing 0.05\n" +
         fix + "region turned\ntimestep 0.001\nrun 1\n";
-    EXPECT_EQ(lines_that_say(turned, "thinner than a node spacing").size(), 0u) << x;
+    EXPECT_EQ(times_said(turned, "thinner than a node spacing"), 0) << x;
   }
   for (const double gap : {0.07, 0.2}) {
     const auto blocks =
@@ -348,7 +338,6 @@ SERIAL_TEST(Regions, BadInput)
             0.4 + gap) +
         "region u union 2 a b side out\ncreate_points 1 region u spacing 0.05\n" + fix +
         "region a region b\ntimestep 0.001\nrun 1\n";
-    EXPECT_EQ(lines_that_say(blocks, "gaps of less than a node spacing").size(),
-              gap < 0.1 ? 1u : 0u);
+    EXPECT_EQ(times_said(blocks, "gaps of less than a node spacing"), gap < 0.1 ? 1 : 0);
   }
 }

@@ -1,25 +1,23 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit mpi ranks
 // mpi: 1 4
 
-// Equations of cells by lists of them: against vectors that are known, and against multigrid on the lattice.
+// Equations of cells by lists: against known vectors, and against multigrid on the lattice; and the
+// step of a flow without a fix: what stages read and write, where points go.
 
 #include "mpm_lammps.h"
 
+#include "base/mpm_rows.h"
 #include "field/mpm_node_system.h"
+#include "flow/mpm_flow.h"
 #include "flow/mpm_flow_lattice.h"
 #include "flow/mpm_flow_poisson.h"
 #include "flow/mpm_flow_rows.h"
 
-#include "comm.h"
-
 using namespace MPM_TEST;
 using namespace MPM_NS;
-
-namespace {
-
 /** A number of a cell that does not depend on who has it. */
 double noise(const Grid &grid, int64_t cell)
 {
@@ -29,7 +27,7 @@ double noise(const Grid &grid, int64_t cell)
   return std::sin(12.9898 * i[0] + 78.233 * i[1] + 37.719 * i[2] + 1.0);
 }
 
-/** Cells in a box of n cells along each axis, by points in all of them, and coefficients of their faces and their surface. */
+/** A box of n cells along each axis, with coefficients of their faces and their surface. */
 struct Cells {
   Scene scene;
   MPMFlowLattice cells;
@@ -37,7 +35,7 @@ struct Cells {
   std::vector<double> diagonal, weight;    // by places
 
   Cells(int dim, int n, const std::string &faces, double outside) :
-      scene(box(dim, "si", faces, dim == 3 ? "0 1 0 1 0 1" : "0 1 0 1", 1, 0.02) +
+      scene(box(dim, "si", faces, "0 1 0 1 0 1", 1, 0.02) +
             strprintf("create_points 1 box spacing %.17g\nrun 0\n", 1.0 / n)),
       cells(scene.lmp, {dim, 1.0 / n, {0.0, 0.0, 0.0}, {false, false, false}, {1, 1, 1}}, 1),
       rows(scene.lmp, cells)
@@ -74,8 +72,6 @@ struct Cells {
     return all;
   }
 };
-
-}    // namespace
 
 // of the cells that several ranks reach each has its part, and all cells belong to one
 TEST(Rows, CellsOfRanksAreAsManyAsTheirParts)
@@ -133,13 +129,13 @@ TEST(Rows, SpreadSolvesTheEquations)
         EXPECT_TRUE(report.converged()) << report.describe();
         double worst = 0.0;
         for (int i = 0; i < rows.size(); i++)
-          worst = std::max(worst, std::fabs(x[i] - noise(of.cells.grid, rows.cell_at(i))));
+          grow(worst, x[i] - noise(of.cells.grid, rows.cell_at(i)));
         EXPECT_LT(of.most(worst), 1e-10) << dim << " " << n << " " << faces;
         EXPECT_LT(report.iterations, 60);    // all unknowns with the diagonal: up to 110
       }
 }
 
-// one cycle and one product, on the finest level by lists and on the lattice; the box is closed, too
+// a cycle and a product, on the finest level by lists and on the lattice; the box is closed, too
 TEST(Rows, PoissonIsThatOfTheLattice)
 {
   for (const int dim : {2, 3})
@@ -171,8 +167,8 @@ TEST(Rows, PoissonIsThatOfTheLattice)
       const auto compare = [&]() {
         double worst = 0.0, size = 0.0;
         for (int i = 0; i < rows.size(); i++) {
-          worst = std::max(worst, std::fabs(of_rows[i] - z[rows.cell_at(i)]));
-          size = std::max(size, std::fabs(of_rows[i]));
+          grow(worst, of_rows[i] - z[rows.cell_at(i)]);
+          grow(size, of_rows[i]);
         }
         EXPECT_LT(of.most(worst), 1e-12 * of.most(size)) << dim << " " << outside;
       };
@@ -183,4 +179,83 @@ TEST(Rows, PoissonIsThatOfTheLattice)
       poisson.precondition(mine.data(), of_rows.data());
       compare();
     }
+}
+
+constexpr double H = 0.1;
+
+/** Water in the lower part of a box, with a velocity that has a divergence. */
+std::string water()
+{
+  return box(2, "si", "f f", "0 1 0 1", 1, 0.02) + "region wet block 0 1 0 0.6 INF INF\n" +
+      strprintf("create_points 1 region wet spacing %.17g\n", 0.5 * H) +
+      "variable vx atom sin(7*x+3*y)\nvariable vy atom cos(5*x*y)\n"
+      "velocity all set v_vx v_vy 0.0\ntimestep 0.01\n";
+}
+
+MPMIncompressibleOptions options()
+{
+  MPMIncompressibleOptions chosen;
+  chosen.h = H;
+  chosen.density = 1000.0;
+  chosen.transfer = MPMIncompressibleOptions::PIC;
+  chosen.transfer_is_given = true;
+  return chosen;
+}
+
+/** A flow that is ready for its first step. */
+void start(MPMFlow &flow)
+{
+  flow.init();
+  flow.checks.check_points();
+  flow.parts.cells.sort();
+  flow.start();
+}
+
+// a stage reads points, or what an earlier stage has written
+SERIAL_TEST(Plan, StagesReadWhatOthersWrote)
+{
+  for (const bool gas : {false, true}) {
+    Scene scene(water() + "run 0\n");
+    auto chosen = options();
+    chosen.has_gas = gas;
+    chosen.gas_law.p = 1.0e5;
+    const MPMRows none;
+    MPMFlow flow(scene.lmp, chosen, 1, "w", none);
+    start(flow);
+    std::set<std::string> known = {"points"}, names;
+    for (const auto &stage : flow.plan().list()) {
+      EXPECT_TRUE(names.insert(stage.name).second) << stage.name;
+      for (const auto &read : stage.reads.list())
+        EXPECT_TRUE(known.count(read)) << stage.name << " " << read;
+      EXPECT_FALSE(stage.writes.list().empty()) << stage.name;
+      known.insert(stage.writes.list().begin(), stage.writes.list().end());
+    }
+    EXPECT_EQ(names.count("gas"), gas);
+    EXPECT_EQ(flow.plan().list().back().name, "faces to points");
+  }
+}
+
+SERIAL_TEST(Plan, MovesPointsAsTheFixDoes)
+{
+  constexpr int STEPS = 4;
+  Scene one(water() + "run 0\n"),
+      two(water() + "fix w all mpm/incompressible 0.1 1000 transfer pic\n");
+  const MPMRows none;
+  MPMFlow flow(one.lmp, options(), 1, "w", none);
+  start(flow);
+  for (int step = 0; step < STEPS; step++) flow.step();
+  two.commands(strprintf("run %d\n", STEPS));
+  const auto *const mine = one.lmp->atom, *const its = two.lmp->atom;
+  ASSERT_EQ(mine->nlocal, its->nlocal);
+  ASSERT_GT(mine->natoms, 0);
+  std::map<tagint, int> place;
+  for (int j = 0; j < its->nlocal; j++) place[its->tag[j]] = j;
+  for (int i = 0; i < mine->nlocal; i++) {
+    const int j = place.at(mine->tag[i]);
+    for (int d = 0; d < 2; d++) {
+      EXPECT_NEAR(mine->x[i][d], its->x[j][d], 1e-10);
+      EXPECT_NEAR(mine->v[i][d], its->v[j][d], 1e-10);
+    }
+  }
+  EXPECT_LT(flow.results.residual, 1e-8);
 }

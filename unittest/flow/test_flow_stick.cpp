@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -10,12 +10,10 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 enum { FILLED = 3, KINETIC = 5, ITERATIONS = 13 };
 
-/** Root mean square of the error of velocities between a cylinder of radius 0.2 that turns and one of radius 0.45, over that
- *  of the velocities (Couette), after four long steps. */
+/** Root mean square of the error of velocities between a cylinder of radius 0.2 that turns and one
+ *  of radius 0.45, over that of the velocities (Couette), after four long steps. */
 double error_of_cylinders(int n)
 {
   Scene run(plane("si", "f f", "0 1 0 1", 1, 0.01) +
@@ -39,8 +37,8 @@ double error_of_cylinders(int n)
   return measured(strprintf("%d cells: error", n), std::sqrt(sum / square));
 }
 
-/** Slow flow by a weight through a square array of cylinders, which fill 0.05: mean velocity over that of A.S. Sangani, A. Acrivos,
- *  Int. J. Multiphase Flow 8 (1982) 193, by whom the drag on one is 15.56 times viscosity and mean velocity. */
+/** Slow flow by a weight through a square array of cylinders, which fill 0.05: mean velocity over
+ *  that of A.S. Sangani, A. Acrivos, Int. J. Multiphase Flow 8 (1982) 193, drag 15.56 mu u. */
 double flow_through_cylinders(int n)
 {
   constexpr double filled = 0.05, speed = 0.01;
@@ -65,8 +63,7 @@ double flow_through_cylinders(int n)
 /** A block of honey that falls into a bowl or, in 3d, onto an inclined plane. */
 std::string honey(int dim, double h)
 {
-  return box(dim, "si", dim == 3 ? "f f p" : "f f", dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1,
-             0.02) +
+  return box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
       (dim == 3 ? "region bowl plane 0.5 0.25 0 0.3 -1 0\nregion in plane 0.5 0.251 0 -0.3 1 0\n"
                 : "region bowl sphere 0.503 0.511 0 0.45 side out\n"
                   "region in sphere 0.503 0.511 0 0.449\n") +
@@ -82,9 +79,7 @@ std::string fixes(double h)
       "fix g all gravity 9.81 vector 0 -1 0\nfix dt all mpm/dt 0.5 max 0.02\n";
 }
 
-}    // namespace
-
-// plates with a slope of 1:2 in a periodic box: drag of walls that are oblique to the lattice, with 8 and 16 cells between them
+// plates with a slope of 1:2 in a periodic box: drag of oblique walls, 8 and 16 cells between them
 SERIAL_TEST(Stick, InclinedPlates)
 {
   const double a = 0.193,
@@ -122,7 +117,7 @@ SERIAL_TEST(Stick, InclinedPlates)
   }
 }
 
-// a gap of 8 cells at 45 degrees, at four places in a cell: the drag is that of the place, and not of stairs
+// a gap of 8 cells at 45 degrees, at four places in a cell: the drag is not that of stairs
 SERIAL_TEST(Stick, PlatesAtFortyFiveDegrees)
 {
   constexpr double gap = 8.0, period = 16.0 * 0.70710678118654752;    // in cells
@@ -179,7 +174,7 @@ SERIAL_TEST(Stick, Pipe)
   }
 }
 
-// between balls, the inner of which turns: cells behind small openings do not take thousands of iterations
+// between balls, one of which turns: cells behind small openings do not take many iterations
 SERIAL_TEST(Stick, IterationsBetweenBalls)
 {
   Scene run(
@@ -243,10 +238,8 @@ SERIAL_TEST(Stick, Bowl)
   const double volume = run.fix("w")->compute_vector(FILLED);
   double before = 1e9, most = 0.0;
   run.each_step([&](double **) {
-    double now = 0.0;
-    for (int i = 0; i < run.n(); i++)
-      now += run.lmp->atom->rmass[i] *
-          (0.5 * (std::pow(run.v()[i][0], 2) + std::pow(run.v()[i][1], 2)) + 9.81 * run.x()[i][1]);
+    const auto s = run.sums();
+    const double now = s.kinetic + 9.81 * s.mass * s.x[1];
     most = std::max(most, now / before - 1.0);
     before = now;
   });
@@ -275,7 +268,7 @@ SERIAL_TEST(Stick, BallThatTurns)
       square += u * u;
     }
   }
-  // without strain equations are exact; what is left is of points next to the wall, half of all with 4.5 cells in the radius
+  // without strain equations are exact; what is left is of points at the wall, here half of all
   EXPECT_LT(measured("error", std::sqrt(sum / square)), 0.05);
 }
 

@@ -1,16 +1,14 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 3 4
 
-// Implicit viscosity of fix mpm/incompressible: flows of honey, with steps far beyond the explicit limit.
+// Implicit viscosity of fix mpm/incompressible: honey, in steps far beyond the explicit limit.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 enum { DIVERGENCE = 2, KINETIC = 5, FASTEST = 6 };
 
@@ -20,7 +18,7 @@ double explicit_dt(double h, double nu, int dim)
   return h * h / (2.0 * dim * nu);
 }
 
-/** Slow vortices of Taylor and Green on n x n cells: what is left of their amplitude at t, over exp(-2 nu k^2 t). */
+/** Slow vortices of Taylor and Green on n x n cells: amplitude at t, over exp(-2 nu k^2 t). */
 double vortices_left(int n, double t, int steps)
 {
   Scene run(
@@ -33,7 +31,7 @@ double vortices_left(int n, double t, int steps)
   return std::sqrt(4e12 * run.fix("w")->compute_vector(KINETIC)) / std::exp(-8.0 * PI * PI * t);
 }
 
-/** A sheet of length 4 and thickness 0.4 across its middle, that is stretched: u = U sin(pi x/4). */
+/** A sheet of length 4, 0.4 thick across its middle, is stretched: u = U sin(pi x/4). */
 std::string sheet(double h, double offset, double nu)
 {
   return plane("si", "p p", "-2.6 2.6 -0.6 0.6", 1, 0.02) +
@@ -45,21 +43,7 @@ std::string sheet(double h, double offset, double nu)
       strprintf("fix w all mpm/incompressible %.17g 1 viscosity %g implicit yes\n", h, nu);
 }
 
-std::array<double, 3> momenta(Scene &run)    // and the angular one about the origin
-{
-  std::array<double, 3> sum = {};
-  for (const auto &s : run.gather()) {
-    sum[0] += s.mass * s.v[0];
-    sum[1] += s.mass * s.v[1];
-    sum[2] += s.mass * (s.x[0] * s.v[1] - s.x[1] * s.v[0]);
-  }
-  return sum;
-}
-
-}    // namespace
-
-// H2: from rest to a time at which both are not steady, with an error of first order in the step, and to the steady flow in a few
-// steps of any length
+// H2: from rest to an unsteady time, of first order in the step, and to steady flow in any steps
 SERIAL_TEST(Plates, CouetteAndPoiseuille)
 {
   const auto at_half = [](Scene &scene) {
@@ -96,7 +80,7 @@ SERIAL_TEST(Plates, CouetteAndPoiseuille)
   }
 }
 
-// a hundred times the explicit limit: a factor of 0.67 in a step. Backward Euler has 1/(1 + 2 nu k^2 dt), and is of first order
+// a hundred times the explicit limit, 0.67 in a step; backward Euler: 1/(1 + 2 nu k^2 dt)
 SERIAL_TEST(Vortices, DecayWithLongSteps)
 {
   const int n = 64;
@@ -113,12 +97,12 @@ SERIAL_TEST(Vortices, DecayWithLongSteps)
   EXPECT_LT(error[2], error[1]);
 }
 
-// Trouton: a sheet resists its stretching with 4 mu. Its velocity decays with 4 nu k^2, however long steps are against the
-// time h^2/nu and that of its thickness. Without the pressure that belongs to viscous stress it would be 2 mu
+// Trouton: a sheet resists its stretching with 4 mu. Its velocity decays with 4 nu k^2, however
+// long steps are. Without the pressure that belongs to viscous stress: 2 mu
 SERIAL_TEST(Sheet, Trouton)
 {
   constexpr double t = 0.2, rate = 4.0 * (PI / 4) * (PI / 4);
-  // of the rate of decay; with so many steps, cells across half of the sheet, and its middle so far from a face
+  // of the rate of decay; steps, cells across half of the sheet, distance of its middle from a face
   const auto error = [&](int steps, int n, double offset) {
     const double h = 0.2 / n;
     Scene run(sheet(h, offset * h, 1.0) + strprintf("timestep %.17g\nrun %d\n", t / steps, steps));
@@ -145,8 +129,7 @@ SERIAL_TEST(Film, SurfaceAnywhere)
   for (const int dim : {2, 3})
     for (const int rows : {40, 41, 42, 43}) {
       const double H = 0.0125 * rows, g = 1e-5;
-      Scene run(box(dim, "si", dim == 3 ? "p f p" : "p f",
-                    dim == 3 ? "0 0.1 0 1 0 0.1" : "0 0.1 0 1", 1, 0.02) +
+      Scene run(box(dim, "si", "p f p", "0 0.1 0 1 0 0.1", 1, 0.02) +
                 strprintf("region w block INF INF 0 %.17g INF INF\n", H + 1e-6) +
                 "create_points 1 region w spacing 0.0125\nfix w all mpm/incompressible 0.025 1 "
                 "viscosity 1 implicit yes wall ylo stick\n" +
@@ -178,28 +161,28 @@ SERIAL_TEST(Tank, AtRest)
   }
 }
 
-// what turns as a rigid body does so without stress: with honey it turns as without viscosity, and momentum stays
+// rigid rotation is without stress: honey turns as without viscosity, and momentum stays
 SERIAL_TEST(Blob, TurnsRigidly)
 {
   for (const int dim : {2, 3}) {
     double left[2];
     for (const int k : {0, 1}) {
-      Scene run(box(dim, "si", dim == 3 ? "p p p" : "p p",
-                    dim == 3 ? "-0.5 0.5 -0.5 0.5 -0.5 0.5" : "-0.5 0.5 -0.5 0.5", 1, 0.02) +
+      Scene run(box(dim, "si", "p p p", "-0.5 0.5 -0.5 0.5 -0.5 0.5", 1, 0.02) +
                 "region b block -0.31 0.27 -0.2 0.17 " + (dim == 3 ? "-0.2 0.2" : "INF INF") +
                 "\n" +
                 "create_points 1 region b spacing 0.03125\n"
                 "variable vx atom -0.5*(y-0.0003)+0.03\nvariable vy atom 0.5*(x+0.02)\n"
                 "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000 " +
                 std::string(k ? "viscosity 1e5 implicit yes" : "") + "\ntimestep 0.02\nrun 0\n");
-      const auto before = momenta(run);
+      const auto before = run.sums();
       const double energy = run.fix("w")->compute_vector(KINETIC);
       run.commands(dim == 3 ? "run 10\n" : "run 50\n");
-      const auto after = momenta(run);
-      left[k] = after[2] / before[2];
+      const auto after = run.sums();
+      left[k] = after.L[2] / before.L[2];
       measured(strprintf("%dd: angular momentum that is left", dim), left[k]);
       measured("energy that is left", run.fix("w")->compute_vector(KINETIC) / energy);
-      for (int d = 0; d < 2; d++) EXPECT_NEAR(after[d] / before[0], before[d] / before[0], 0.02);
+      for (int d = 0; d < 2; d++)
+        EXPECT_NEAR(after.p[d] / before.p[0], before.p[d] / before.p[0], 0.02);
       EXPECT_NEAR(left[k], 1.0, 0.02);
     }
   }
@@ -216,9 +199,9 @@ SERIAL_TEST(Blob, KeepsMomentaInAStep)
               "variable vx atom 0.5*x+0.2*y+3*x*y\nvariable vy atom -0.5*y+0.7*x-1.5*y*y\n"
               "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.03125 1000 spread 0 " +
               std::string(k ? "viscosity 1e5 implicit yes" : "") + "\ntimestep 0.001\nrun 0\n");
-    const auto before = momenta(run);
+    const auto before = run.sums();
     run.commands("run 1\n");
-    change[k] = momenta(run)[2] / before[2] - 1.0;
+    change[k] = run.sums().L[2] / before.L[2] - 1.0;
     measured("change of angular momentum", change[k]);
   }
   EXPECT_LT(std::fabs(change[1]), 0.01);
@@ -230,8 +213,7 @@ SERIAL_TEST(Blob, EnergyNeverGrows)
   for (const int dim : {2, 3})
     for (const double mu : {1.0, 1e2, 1e4}) {
       Scene run(
-          box(dim, "si", dim == 3 ? "f f f" : "f f", dim == 3 ? "0 1 0 1 0 0.25" : "0 1 0 1", 1,
-              0.02) +
+          box(dim, "si", "f f f", "0 1 0 1 0 0.25", 1, 0.02) +
           "region b block 0.2 0.8 INF 0.7 INF INF\ncreate_points 1 region b spacing 0.03125\n"
           "variable vx atom 0.1*sin(20*y)+0.2*cos(31*x)\nvariable vy atom 0.3*sin(17*x+9*y)\n"
           "velocity all set v_vx v_vy 0\nfix w all mpm/incompressible 0.0625 1000 wall ylo stick "
@@ -276,8 +258,7 @@ SERIAL_TEST(Units, Viscosity)
 TEST(Block, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {
-    const auto scene = box(dim, "si", dim == 3 ? "f f p" : "f f",
-                           dim == 3 ? "0 1 0 1 0 0.4" : "0 1 0 1", 1, 0.02) +
+    const auto scene = box(dim, "si", "f f p", "0 1 0 1 0 0.4", 1, 0.02) +
         "region water block INF 0.4 0 0.61 INF INF\n" +
         strprintf("create_points 1 region water spacing %g\n", dim == 3 ? 0.05 : 0.025);
     const auto fixes =
@@ -293,8 +274,9 @@ TEST(Block, RanksAndRestart)
   }
 }
 
-// a step whose viscosity does not converge, as iterations are few, is gone in parts. It has the mean velocity between plates that
-// backward Euler has with so many steps, whatever else flows there, and the weight on its walls; the same on all ranks
+// a step whose viscosity does not converge, as iterations are few, is gone in parts. It has the
+// mean velocity between plates that backward Euler has with so many steps, whatever else flows
+// there, and the weight on its walls; the same on all ranks
 TEST(Parts, EndsAsShorterSteps)
 {
   constexpr double dt = 0.005, g = 1e-4;
@@ -333,8 +315,8 @@ TEST(Parts, EndsAsShorterSteps)
   }
 }
 
-// honey that falls, with two solves in steps of other durations than those before, a region, and tension: halvings on all ranks,
-// and those of a restart file go on
+// honey that falls, with two solves in steps of other durations than those before, a region, and
+// tension: halvings on all ranks, and those of a restart file go on
 TEST(Parts, RanksAndRestart)
 {
   const auto scene = plane("si", "f f", "0 1 0 1", 1, 0.02) +

@@ -10,8 +10,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 double mean(const MaterialPoint &p)
 {
   return -p.pressure();
@@ -28,8 +26,6 @@ void shear(MaterialPoint &p, double e, double dt = 1.0)
   const double g = 0.5 * std::sqrt(3.0) * e / dt;
   steps(p, {0, g, 0, g, 0, 0, 0, 0, 0}, dt);
 }
-
-/* ---------------------------------------------------------------------- Johnson-Cook */
 
 const double SIGMAY = 490e6, BULK = 170e9;
 const std::string STEEL = "density 7850 eos linear 170e9 strength j2 77e9 490e6 ";
@@ -145,8 +141,6 @@ TEST(JohnsonCookDamage, SofteningIsLinearInWhatIsUsed)
   EXPECT_EQ(value(p, "damage"), 1.0);
 }
 
-/* ---------------------------------------------------------------------- Cockcroft-Latham */
-
 TEST(CockcroftLathamDamage, FailureStrain)
 {
   const auto material = make(STEEL + "damage cockcroft/latham 2e8");
@@ -182,8 +176,6 @@ TEST(CockcroftLathamDamage, FailureStrain)
   EXPECT_NEAR(value(d, "used"), used, 1e-12);
 }
 
-/* ---------------------------------------------------------------------- energy */
-
 /** Out, back into compression, and shear again. */
 Matrix through_failure(double t)
 {
@@ -191,9 +183,8 @@ Matrix through_failure(double t)
   return {0.03 * c, 0.05 * c, 0, 0.01 * c, -0.002 * s, 0.02 * s, 0, 0, 0.01 * c};
 }
 
-// stored + plastic + fracture = stress power through failure, whatever bears load afterwards, to
-// second order. The coefficient depends on where the moments of failure and of change from tension
-// to compression lie in their steps, hence a bound and no rate.
+// stored + plastic + fracture = stress power through failure, to second order, with a coefficient
+// that depends on where failure lies in its step, hence a bound.
 TEST(DamageEnergy, BalanceThroughFailure)
 {
   const std::string soft = STEEL + "damage johnson/cook 0.004 0.002 -1.5 soften from 0.2 ";
@@ -270,8 +261,6 @@ TEST(DamageEnergy, FailedPointsSlideWithFriction)
   }
   EXPECT_GT(p.pressure(), pressure);
 }
-
-/* ---------------------------------------------------------------------- Rankine */
 
 const double E_CONCRETE = 30e9, NU_CONCRETE = 0.2;
 const std::string CONCRETE =
@@ -425,8 +414,6 @@ TEST(RankineDamage, StrengthsAreWeibullDistributed)
   }
 }
 
-/* ---------------------------------------------------------------------- Grady-Kipp */
-
 // constant strain rate: D = alpha rate^m t^(m+3), and what follows from that
 TEST(GradyKippDamage, ConstantStrainRate)
 {
@@ -462,8 +449,6 @@ TEST(GradyKippDamage, ConstantStrainRate)
   EXPECT_NEAR(std::log(strengths[2] / strengths[1]) / std::log(100.0), 3 / (m + 3), 1e-3);
   EXPECT_NEAR(std::log(strengths[1] / strengths[0]) / std::log(100.0), 3 / (m + 3), 1e-3);
 }
-
-/* ---------------------------------------------------------------------- Gurson */
 
 struct Gurson {
   double K, sigmay, e0, n, q1, q2, fn, en, sn, fc, ff;
@@ -622,8 +607,7 @@ TEST(GursonLaw, NoVoids)
   }
 }
 
-// what voids it had are closed by 20 to 200 times the yield stress, in one step or many; the rest
-// is a von Mises solid
+// what voids it had are closed by 20 to 200 times the yield stress, in one step or many
 TEST(GursonLaw, ShearOfClosedVoids)
 {
   const double G3 = 3 * 2e11 / 2.6;
@@ -741,5 +725,3 @@ TEST(Damage, BadInputIsRefused)
       make("density 1 eos linear 1 strength elastic 1 damage rankine 7 after none")->describe(),
       "density 1, eos linear K=1, strength elastic G=1, damage rankine SIGMA=7 after none");
 }
-
-}    // namespace

@@ -11,8 +11,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 using Stretches = std::array<double, 3>;
 
 double volume(const Stretches &l)
@@ -304,8 +302,6 @@ TEST(Hyperelastic, TreloarRubber)
   }
 }
 
-/* ---------------------------------------------------------------------- all hyperelastic laws */
-
 std::vector<std::string> all_laws()
 {
   std::vector<std::string> laws;
@@ -338,8 +334,7 @@ TEST(Hyperelastic, StressIsTheSlopeOfTheEnergy)
   }
 }
 
-// No energy comes out of a closed cycle. The trapezoidal rule converges exponentially for a smooth
-// cycle: the error is round-off.
+// No energy comes out of a closed smooth cycle: the trapezoidal rule is exact to round-off.
 TEST(Hyperelastic, ClosedCycle)
 {
   const auto cycle = [](double a) {
@@ -443,11 +438,8 @@ TEST(Hyperelastic, Extremes)
   }
 }
 
-/* ---------------------------------------------------------------------- wave speeds */
-
-/** Largest eigenvalue of the acoustic tensors over many normals, by central differences of the
- *  first Piola-Kirchhoff stress: density_0 c^2 m = dP(m x N) N for the reference normal N = F^T n,
- *  which all waves, longitudinal and transverse, obey. */
+/** Largest eigenvalue of the acoustic tensors over many normals, by central differences: density_0
+ *  c^2 m = dP(m x N) N for the reference normal N = F^T n. */
 double fastest_wave(const MaterialPoint &start)
 {
   const double d = 1e-6;
@@ -514,10 +506,7 @@ TEST(Hyperelastic, WaveSpeedIsThatOfTheFastestWave)
   }
 }
 
-/* ---------------------------------------------------------------------- anisotropic laws */
-
-/** Stiffness by probing: columns are the stresses of small strains, order xx yy zz xy xz yz with
- *  engineering shear strains. */
+/** Stiffness by probing: columns are stresses of small strains xx yy zz xy xz yz (engineering). */
 Eigen::Matrix<double, 6, 6> stiffness(const Material &material)
 {
   const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
@@ -624,8 +613,7 @@ TEST(Anisotropic, WavesAlongTheAxes)
 }
 
 // woven yarns, however taut, slack, or sheared, and with any angle between them: stress is the
-// slope of the energy, and no wave is faster than the bound, which is close when yarns are just
-// taut
+// slope of the energy, and no wave is faster than the bound, close when yarns are just taut
 TEST(Anisotropic, Woven)
 {
   for (const char *more : {"", " angle 50", " angle 110 locking 20 4e7"}) {
@@ -657,5 +645,3 @@ TEST(Anisotropic, Woven)
     }
   }
 }
-
-}    // namespace

@@ -9,10 +9,6 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
-/* ---------------------------------------------------------------------- shock */
-
 // behind a shock of particle speed u: P = density U u, J = 1 - u/U, E = density u^2/2
 TEST(Shock, SymmetricImpactStates)
 {
@@ -39,8 +35,7 @@ TEST(Shock, SymmetricImpactStates)
   }
 }
 
-// slow compression: the isentrope of an independent integration, below the Hugoniot, and second
-// order
+// slow compression: the isentrope, integrated independently, below the Hugoniot; second order
 TEST(Shock, Isentrope)
 {
   const double rho = 8930, c0 = 3940, s = 1.489, g = 1.99, K = rho * c0 * c0;
@@ -226,8 +221,6 @@ TEST(StiffenedGas, Cavitates)
   EXPECT_NEAR(once.stored_energy() - start, 0.5 * (1e6 - 1e5) * 0.2, 1e-3);
 }
 
-/* ---------------------------------------------------------------------- polynomial */
-
 TEST(Polynomial, PressureIsTheFormula)
 {
   const double A1 = 7e10, A2 = 8e10, A3 = 5e10, B0 = 2, B1 = 1.5, T1 = 6e10, T2 = 1e10, E0 = 1e9;
@@ -261,8 +254,6 @@ TEST(Polynomial, CutoffAndSpall)
   EXPECT_EQ(q.history(2), 1.0);
 }
 
-/* ---------------------------------------------------------------------- JWL */
-
 // TNT (B.M. Dobratz, P.C. Crawford, LLNL Explosives Handbook, UCRL-52997, 1985)
 const double A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, OMEGA = 0.30, E0 = 7.0e9, D = 6930,
              RHO = 1630;
@@ -289,8 +280,7 @@ TEST(JWL, IsentropeOfTheProducts)
 }
 
 // a point that burns while the front squeezes it lands on the Hugoniot of the products, which the
-// Rayleigh line of the detonation velocity touches in the Chapman-Jouguet state; values of the
-// explosives in potentials/
+// Rayleigh line touches in the Chapman-Jouguet state; explosives in potentials/
 TEST(JWL, ChapmanJouguetState)
 {
   struct {
@@ -455,5 +445,3 @@ TEST(Definition, BadInputIsRefused)
        {"density 1 eos jwl 1 1 1 1 1 1", "D is missing", 10},
        {"density 1 eos jwl 1 1 1 1 1 1 1 detonate 0 0 0", "T is missing", 15}});
 }
-
-}    // namespace

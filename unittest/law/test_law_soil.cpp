@@ -2,8 +2,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU
 // General Public License, version 2; see the file LICENSE.
 
-// Laws of soil, rock and snow at a single point: strength in the tests of a soil laboratory, flow,
-// critical states, and what holds for all of them.
+// Laws of soil, rock and snow at a point: laboratory tests, flow, critical states, common traits.
 
 #include "law/spectral.h"
 #include "material/material_testing.h"
@@ -11,14 +10,11 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 constexpr double DEG = M_PI / 180.0;
 
 /* ---------------------------------------------------------------------- laboratory tests */
 
-/** One step with an axial rate along x and lateral rates along y (and z, unless that is held) such
- *  that the stress along y is the given one. */
+/** One step with an axial rate along x and lateral rates that give this stress along y. */
 void step_lateral(MaterialPoint &p, double axial, double lateral_stress, double dt,
                   bool plane = false)
 {
@@ -61,13 +57,12 @@ void consolidate(MaterialPoint &p, double pressure, int n = 20)
     steps(q, isotropic(-strain / 3), 1.0 / n, n);
     return q;
   };
-  double low = 0.0, high = 1e-6;
+  double high = 1e-6;
   while (compress(high).pressure() < pressure) high *= 2.0;
-  for (int it = 0; it < 100; it++) {
-    const double half = 0.5 * (low + high);
-    (compress(half).pressure() < pressure ? low : high) = half;
-  }
-  steps(p, isotropic(-high / 3), 1.0 / n, n);
+  const double strain = root_of(0.0, high, [&](double strain) {
+    return compress(strain).pressure() - pressure;
+  });
+  steps(p, isotropic(-strain / 3), 1.0 / n, n);
   EXPECT_NEAR(p.pressure(), pressure, 1e-9 * pressure);
 }
 
@@ -114,21 +109,6 @@ TEST(SoilLaws, RotationOnTopOfShear)
   }
 }
 
-/** Moves a point of a batch by I + A. */
-void displace(Batch &b, int i, Matrix A)
-{
-  Matrix F;
-  for (int k = 0; k < 9; k++) {
-    b.A[k][i] = A[k];
-    A[k] += IDENTITY[k];
-    F[k] = b.F[k][i];
-  }
-  F = A * F;
-  for (int k = 0; k < 9; k++) b.F[k][i] = F[k];
-  b.Jold[i] = b.J[i];
-  b.J[i] = det(F);
-}
-
 // steps of any size and direction: finite, and dissipation is never negative
 TEST(SoilLaws, LargeSteps)
 {
@@ -160,8 +140,7 @@ TEST(SoilLaws, LargeSteps)
   }
 }
 
-// batches that stay elastic as a whole go a short way: the same result as beside a point that
-// yields
+// batches that stay elastic go a short way: the same result as beside a point that yields
 TEST(SoilLaws, ElasticBatches)
 {
   for (const char *text : all) {
@@ -199,10 +178,7 @@ TEST(SoilLaws, ElasticBatches)
   }
 }
 
-/* ---------------------------------------------------------------------- Drucker-Prager */
-
-// equal to Mohr-Coulomb in triaxial compression, sigma_1 = N sigma_3 + 2 c sqrt(N), and there the
-// volume grows by M_psi per shear strain
+// equal to Mohr-Coulomb in triaxial compression; there the volume grows by M_psi per shear strain
 TEST(DruckerPrager, TriaxialCompression)
 {
   for (const double c : {0.0, 2e4})
@@ -270,8 +246,7 @@ TEST(DruckerPrager, SeparatedSandDoesNotGainVolume)
   EXPECT_NEAR(p.work[PLASTIC], 0.0, 1e-7 * K);
 }
 
-// tension: to the apex c cot(phi) of the cone, or to the cutoff; opening dissipates, closing does
-// not
+// tension: to the apex c cot(phi) of the cone, or the cutoff; opening dissipates, closing does not
 TEST(DruckerPrager, Tension)
 {
   const double c = 2e4, phi = 35 * DEG;
@@ -369,8 +344,6 @@ TEST(DruckerPrager, OrderOfTheReturn)
   expect_order(error, 1.0, 0.1);
   EXPECT_LT(error[0], 0.02 * size(exact));
 }
-
-/* ---------------------------------------------------------------------- Mohr-Coulomb */
 
 /** Principal Kirchhoff stresses, largest first. */
 std::array<double, 3> principal(const MaterialPoint &p)
@@ -535,8 +508,6 @@ TEST(MohrCoulomb, SofteningToNothing)
     }
 }
 
-/* ---------------------------------------------------------------------- Cam-Clay */
-
 constexpr double CC_G = 5e6, CC_M = 0.9, CC_LAMBDA = 0.2 / 1.8, CC_KAPPA = 0.04 / 1.8;
 const char *const clay = "density 1900 camclay 5e6 0.9 0.2 0.04 0.8 1e5 ";
 
@@ -581,8 +552,7 @@ TEST(CamClay, UndrainedStrength)
   }
 }
 
-/** Pressure, equivalent stress and preconsolidation pressure of the rate equations on a straight
- *  strain path from the yield surface. */
+/** Pressure, equivalent stress, preconsolidation on a straight path from the yield surface. */
 State clay_ode(const State &start, double volume, double strain, int n)
 {
   const auto rate = [&](double, const State &s) {
@@ -637,8 +607,6 @@ TEST(CamClay, DrainedTriaxialReachesCriticalState)
     EXPECT_GT(ocr > 2.0 ? J - 1.0 : 1.0 - J, 0.01) << ocr;    // dilates or contracts
   }
 }
-
-/* ---------------------------------------------------------------------- critical states, all */
 
 // returned stress on the ellipse, plastic strain normal to it
 TEST(CriticalState, ReturnIsOnTheSurfaceAndAssociated)
@@ -719,8 +687,6 @@ TEST(Nacc, BreaksInTension)
   EXPECT_NEAR(pressure(p), K * std::sinh(3 * -value(p, "alpha")), 1e-9 * K);
 }
 
-/* ---------------------------------------------------------------------- mu(I) */
-
 TEST(MuI, SteadyShear)
 {
   const double mus = std::tan(20.9 * DEG), mu2 = std::tan(32.76 * DEG), I0 = 0.279, d = 5e-4;
@@ -759,8 +725,6 @@ TEST(MuI, OtherUnits)
   EXPECT_NEAR(q.wave_speed(), p.wave_speed(), 1e-9 * p.wave_speed());
 }
 
-/* ---------------------------------------------------------------------- snow */
-
 TEST(Snow, HardensInCompressionAndFallsApartInTension)
 {
   const double E = 1.4e5, nu = 0.2, mu = E / 2.4, lambda = E * nu / (1.2 * 0.6);
@@ -789,8 +753,6 @@ TEST(Snow, HardensInCompressionAndFallsApartInTension)
   EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], p.power, 1e-4 * p.power);
 }
 
-/* ---------------------------------------------------------------------- order */
-
 // first order in the step where the flow turns, for all laws
 TEST(SoilLaws, FirstOrderOnACurvedPath)
 {
@@ -818,8 +780,6 @@ TEST(SoilLaws, FirstOrderOnACurvedPath)
       EXPECT_GT(std::log2(error[0] / error[2]) / 2, 0.85) << error[0] << " " << error[2];
   }
 }
-
-/* ---------------------------------------------------------------------- material files */
 
 // what the numbers in the files were made from comes out again
 TEST(SoilFiles, GiveThePublishedStrength)
@@ -869,5 +829,3 @@ TEST(SoilLaws, BadDefinitionsAreRefused)
                   {"snow 1 0 1 0 1", "out of range"}},
                  "density 1 ");
 }
-
-}    // namespace

@@ -2,15 +2,12 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU
 // General Public License, version 2; see the file LICENSE.
 
-// Strengths and thermal parts, point by point, against closed forms and ordinary differential
-// equations that are solved here.
+// Strengths and thermal parts, point by point, against closed forms and equations solved here.
 
 #include "material/material_testing.h"
 
 using namespace MPM_NS;
 using namespace material_testing;
-
-namespace {
 
 const double ROOT3 = std::sqrt(3.0);
 
@@ -26,8 +23,6 @@ double shear_stress(const MaterialPoint &p)
 {
   return ROOT3 * p.stress(3);
 }
-
-/* ---------------------------------------------------------------------- j2: hardening */
 
 const std::string J2 = "density 7800 eos linear 160e9 strength j2 80e9 300e6 ";
 constexpr double G = 80e9, SIGMAY = 300e6;
@@ -107,8 +102,7 @@ TEST(J2Hardening, StraightPath)
   }
 }
 
-// Considere: a bar in tension carries most when the slope of the flow stress equals it; values of
-// Weldox 460 E without change of volume
+// Considere: a bar carries most when the slope of the flow stress equals it (Weldox 460 E)
 TEST(J2Hardening, ConsidereLoad)
 {
   const double E = 211e9, nu = 0.33;
@@ -144,8 +138,6 @@ TEST(J2Hardening, BadInputIsRefused)
        {"kinematic 0 1", "out of range"}},
       J2);
 }
-
-/* ---------------------------------------------------------------------- j2: back stress */
 
 // Bauschinger effect: forward, backward, forward again, in closed form, in any number of steps.
 // Back stress from x0 at plastic strain 0, forward: x = c - (c - x0) exp(-gamma e), c = C/gamma
@@ -273,10 +265,7 @@ TEST(J2Kinematic, ReturnEndsOnTheYieldSurface)
     }
 }
 
-/* ---------------------------------------------------------------------- j2: rate */
-
-/** Overstress over the strain rate: Y (r/rate)^n of Cowper and Symonds, or S (r/rate)^n of
- *  Perzyna. */
+/** Overstress over strain rate: Y (r/rate)^n (Cowper and Symonds), or S (r/rate)^n (Perzyna). */
 struct Rate {
   const char *text;
   double rate, n, S;    ///< S: 0 for Y
@@ -389,8 +378,6 @@ TEST(J2Rate, RateIndependentLimit)
   }
 }
 
-/* ---------------------------------------------------------------------- Zerilli-Armstrong */
-
 struct ZerilliArmstrong {
   const char *form;
   double C0, C1, C2, C3, C4, C5, N;
@@ -502,8 +489,6 @@ TEST(ZerilliArmstrongLaw, BadInputIsRefused)
     EXPECT_THROW(make(start + text), MaterialError) << text;
 }
 
-/* ---------------------------------------------------------------------- Steinberg */
-
 const double SCG_G0 = 47.7e9, SCG_A = 2.83e-11, SCG_B = 3.77e-4;
 const std::string SCG = "density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 "
                         "0.64e9 2.83e-11 3.77e-4 melt 1790 1.5 2.02 thermal adiabatic 385 300 0 ";
@@ -549,8 +534,7 @@ TEST(SteinbergLaw, ModulusAndFlowStress)
   EXPECT_GT(137e9 * (1 / 0.12 - 1), 1e12);    // TPa are reached
 }
 
-// the flow stress begins where strain before the start has left it, and TREF is where G0 and Y0 are
-// meant
+// the flow stress begins where earlier strain has left it, and TREF is where G0 and Y0 are meant
 TEST(SteinbergLaw, PrestrainAndReferenceTemperature)
 {
   Point p("density 8930 eos linear 137e9 strength steinberg 47.7e9 0.12e9 36 0.45 0.64e9 0 3.77e-4 "
@@ -621,8 +605,6 @@ TEST(SteinbergLaw, BadInputIsRefused)
   EXPECT_THROW(make(start + "1 1 1 1 1 0 0 melt 1 1 1"), MaterialError);    // nor here
   EXPECT_NO_THROW(make(start + "1 1 1 1 1 0 1e-3 tref 0 thermal constant 300"));
 }
-
-/* ---------------------------------------------------------------------- all strengths */
 
 // tension with free sides: the equivalent stress is the axial one, and the flow stress of the
 // strain, rate, temperature (and pressure of the step before) there; small strain by hand
@@ -709,8 +691,6 @@ TEST(Strengths, RotationOnTopOfShear)
   }
 }
 
-/* ---------------------------------------------------------------------- thermal parts */
-
 TEST(Thermal, PlasticWorkHeats)
 {
   const double rho = 7800, cp = 460, chi = 0.85;
@@ -783,16 +763,13 @@ TEST(Thermal, HeatOfFusion)
 // all viscous work becomes heat, whatever CHI
 TEST(Thermal, ViscousWorkHeats)
 {
-  Point p("density 1000 eos linear 1e9 viscosity newtonian 1000 "
-          "thermal adiabatic 4000 300 0.9");
+  Point p("density 1000 eos linear 1e9 viscosity newtonian 1000 thermal adiabatic 4000 300 0.9");
   const double rate = 1e3, time = 1e-3;
   steps(p, {0, 0.5 * rate, 0, 0.5 * rate, 0, 0, 0, 0, 0}, time / 10, 10);
   const double heat = 1000 * rate * rate * time;    // mu (2 D12)^2
   EXPECT_NEAR(p.work[VISCOUS], heat, 1e-9 * heat);
   EXPECT_NEAR(p.history(0) - 300, heat / (1000 * 4000), 1e-9);
 }
-
-/* ---------------------------------------------------------------------- material files */
 
 /** Flow stress in MPa after shear at a rate, from the temperature of the file. */
 double flow_stress(const std::string &name, double strain, double rate)
@@ -820,5 +797,3 @@ TEST(MaterialFiles, FitsOfTheSameMetalAgree)
     EXPECT_NEAR(a / b, 1.0, p.tolerance) << p.one << " " << a << " " << p.other << " " << b;
   }
 }
-
-}    // namespace

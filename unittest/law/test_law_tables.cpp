@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit docs
 
@@ -20,8 +15,6 @@
 #include <cstring>
 
 using namespace MPM_NS;
-
-namespace {
 
 const char *const PART_NAME[NPARTS] = {"closed",    "eos",    "strength",
                                        "viscosity", "damage", "thermal"};
@@ -158,8 +151,6 @@ std::map<std::string, std::string> files()
     }
   return all;
 }
-
-}    // namespace
 
 TEST(LawTables, AreUpToDate)
 {

@@ -19,8 +19,6 @@ using namespace MPM_NS;
 using namespace material_testing;
 using MPM_TEST::text_of_file;
 
-namespace {
-
 const char *const PART_NAME[NPARTS] = {"", "eos", "strength", "viscosity", "damage", "thermal"};
 
 /** Adds "part name" of all laws that a definition uses; a closed law comes third, after density. */
@@ -55,8 +53,6 @@ std::vector<std::filesystem::path> material_files()
   return files;
 }
 
-}    // namespace
-
 TEST(Library, AllLawsAreTested)
 {
   std::set<std::string> used;
@@ -84,8 +80,6 @@ TEST(Library, AllLawsAreTimed)
   }
   expect_all(used, "bench_materials.cpp");
 }
-
-/* ---------------------------------------------------------------------- files */
 
 TEST(Library, MaterialFilesAreComplete)
 {
@@ -163,8 +157,7 @@ TEST(Library, SpeedsOfSoundAreThoseOfHandbooks)
   }
 }
 
-// wet sand, gelatin, and the failure of Weldox: what the laws make of the values is what the
-// sources say
+// wet sand, gelatin, the failure of Weldox: laws make of the values what the sources say
 TEST(Library, WetSandIsAtCriticalState)
 {
   Point p(definition("Sand_Toyoura_wet_DP"));
@@ -203,8 +196,7 @@ TEST(Library, GelatinFollowsItsHugoniot)
     if (value(p, "damage") >= 1.0) failed = 0.01 * i;
     if (i > 60 && !failed) EXPECT_NEAR(p.vonmises(), 0.22e6, 1.0);
   }
-  // at a shear of sqrt(3) (plastic + elastic strain), with steps of 0.01 and some of the elastic
-  // shear lost as it turns
+  // at a shear of sqrt(3) in steps of 0.01, with some of the elastic shear lost as it turns
   EXPECT_NEAR(failed, std::sqrt(3.0) * (0.9 + 0.22e6 / (3 * 0.85e6)), 0.03);
   EXPECT_EQ(p.vonmises(), 0.0);
 }
@@ -239,8 +231,6 @@ TEST(Library, WeldoxFailsAtTheStrainsOfItsTests)
 }
 
 /* ---------------------------------------------------------------------- units */
-
-namespace {
 
 /** Numbers in other units over those in SI. */
 struct Scales {
@@ -384,8 +374,6 @@ std::vector<double> response(const Material &material, const Scales &s)
   return all;
 }
 
-}    // namespace
-
 TEST(Library, LawsHaveNoUnitsOfTheirOwn)
 {
   const Scales si = {"si", 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
@@ -411,10 +399,6 @@ TEST(Library, LawsHaveNoUnitsOfTheirOwn)
     }
   }
 }
-
-/* ---------------------------------------------------------------------- extremes */
-
-namespace {
 
 /** Rates of strain, steps, volumes, and temperatures far from those of any test of the material. */
 void stand_extremes(const Material &material)
@@ -446,8 +430,6 @@ void stand_extremes(const Material &material)
         expect_finite(p);
       }
 }
-
-}    // namespace
 
 TEST(Library, LawsStandExtremes)
 {

@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Fix mpm/column, and the free field that fix mpm/dashpot takes from it: level ground that is shaken moves as in one dimension
-// everywhere, also next to its sides.
+// Fix mpm/column, and the free field that fix mpm/dashpot takes from it: level ground that is
+// shaken moves as in one dimension everywhere, also next to its sides.
 
 #include "mpm_lammps.h"
 
@@ -13,14 +13,11 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 // soil of 200 m/s, and of a quarter of its stiffness above 12 m, on rock of 3.5 times the speed
 const std::string GROUND = "variable E equal 2000*200^2*2.5\n";
 const std::string SIDE = " 346.41 200 ";
 
-/** Level ground 20 m high from -10 to 10 m, a column of the given width (m) at 14 m, and waves of shear or pressure
- *  at their base. */
+/** Level ground, 20 m high, from -10 to 10 m, a column of this width at 14 m; waves at the base. */
 std::string site(const std::string &options, bool shear, double width = 2.0)
 {
   return plane("si", "f f", "-20 20 0 24", 2, 0.3) + "group soil empty\ngroup column empty\n" +
@@ -61,25 +58,21 @@ double velocity(Scene &run, int axis, double low, double high, double above)
   return sum / n;
 }
 
-/** Largest difference between ground and column during a run, at the surface: next to the sides and in the middle, over the largest
- *  velocity of the column. */
+/** Largest difference of ground and column at the surface: sides and middle, relative. */
 double difference(Scene &run, int axis, int steps, double top = 19.0)
 {
   double most = 0.0, off = 0.0;
   for (int k = 0; k < steps / 10; k++) {
     run.commands("run 10 post no\n");
     const double free = velocity(run, axis, 13.0, 30.0, top);
-    most = std::max(most, std::fabs(free));
+    grow(most, free);
     for (const double x : {-10.0, -0.5, 9.0})
-      off = std::max(off, std::fabs(velocity(run, axis, x, x + 1.0, top) - free));
+      grow(off, velocity(run, axis, x, x + 1.0, top) - free);
   }
   return off / most;
 }
 
-}    // namespace
-
-// Level ground in two layers moves like its column to 1 %, next to its sides and in the middle; with dashpots of a far side at rest, or
-// walls, it does not
+// Level ground in two layers moves like its column to 1 %, but not with a far side at rest or walls
 struct Sides {
   const char *options;
   bool shear;
@@ -107,7 +100,7 @@ SERIAL_TEST(Level, NeedsTheFreeField)
   }
 }
 
-// The column is a strip of ground that is periodic along x, whatever its width is, and which laws it has; walls see single lines of nodes
+// The column is a periodic strip of ground of any width and laws; walls see single lines of nodes
 SERIAL_TEST(Column, IsAStripWithoutEnd)
 {
   const std::string free = "velocity all ramp vx 0 1 y 0 20\n"
@@ -136,8 +129,8 @@ SERIAL_TEST(Column, IsAStripWithoutEnd)
         column.commands("run 20 post no\n");
         for (int d = 0; d < 2; d++) {
           const double v = velocity(strip, d, -1.0, 30.0, 18.0);
-          most = std::max(most, std::fabs(v));
-          off = std::max(off, std::fabs(v - velocity(column, d, -1.0, 30.0, 18.0)));
+          grow(most, v);
+          grow(off, v - velocity(column, d, -1.0, 30.0, 18.0));
         }
       }
       EXPECT_GT(most, 0.1);
@@ -161,8 +154,7 @@ SERIAL_TEST(Level, AmplifiesTheRock)
     run.commands("run 5 post no\n");
     const double x[4] = {-10.0, -0.5, 9.0, 14.0};
     for (int j = 0; j < 4; j++)
-      most[j] =
-          std::max(most[j], std::fabs(velocity(run, 0, x[j], x[j] + (j < 3 ? 1.0 : 2.0), 19.0)));
+      grow(most[j], velocity(run, 0, x[j], x[j] + (j < 3 ? 1.0 : 2.0), 19.0));
   }
   // the mean over the first cell is that of points 1/4 and 3/4 below the surface
   const double k = kH / H, mean = 0.5 * (cos(0.25 * k) + cos(0.75 * k));
@@ -170,7 +162,7 @@ SERIAL_TEST(Level, AmplifiesTheRock)
   for (const double v : most) EXPECT_NEAR(measured("top over exact", v / exact), 1.0, 0.02);
 }
 
-// Ground that yields, under its weight: the stress of the column comes to the sides, whatever its material does
+// Ground that yields, under its weight: the stress of the column comes to the sides
 SERIAL_TEST(Level, YieldsLikeItsColumn)
 {
   Scene run(replaced(site("transfer aflip 1.0", true), "0.01*", "0.5*") +
@@ -179,9 +171,8 @@ SERIAL_TEST(Level, YieldsLikeItsColumn)
             "region lw block INF -10 INF INF INF INF\nregion rw block 10 INF INF INF INF INF\n"
             "fix floor all mpm/boundary ylo stick\n"
             "fix lw all mpm/boundary region lw slip field grid\n"
-            "fix rw all mpm/boundary region rw slip field grid\n"
-            "mpm_geostatic grid 0.5\nmpm_geostatic far 0.5\ntimestep 1e-3\n"
-            "unfix floor\nunfix lw\nunfix rw\n" +
+            "fix rw all mpm/boundary region rw slip field grid\nmpm_geostatic grid 0.5\n"
+            "mpm_geostatic far 0.5\ntimestep 1e-3\nunfix floor\nunfix lw\nunfix rw\n" +
             FREE + "compute p all mpm/atom eplastic\ncompute most all reduce max c_p\n");
   EXPECT_LT(measured("ground against column", difference(run, 0, 800)), 0.02);
   EXPECT_GT(measured("plastic strain", run.compute_scalar("most")), 1e-3);
@@ -195,7 +186,7 @@ SERIAL_TEST(Level, OtherPointsInTheColumn)
   EXPECT_LT(measured("ground against column", difference(run, 0, 1000)), 0.01);
 }
 
-// Forces of the free field hold the ground where the column is sheared: those of both sides cancel but for the moment; the ledger closes
+// Forces of the free field hold the ground: those of both sides cancel but for the moment
 SERIAL_TEST(Level, ForcesAndWork)
 {
   Scene run(site("transfer aflip 1.0 gain error 0.05", true) + LAYERS + FREE +
@@ -212,14 +203,12 @@ SERIAL_TEST(Level, ForcesAndWork)
   run.lmp->modify->get_compute_by_id("e")->compute_scalar();
   const double *const e = run.compute_vector();
   EXPECT_NEAR(measured("residual", e[10] / (e[0] + e[1])), 0.0, 1e-11);
-  // the energy watch knows the work of the stress at the sides, too: what it tells is what the ledger has in transfer and integration
+  // the energy watch knows the work at the sides: it tells transfer and integration of the ledger
   const double before = e[8] + e[9];
-  const ScratchFile file("log");
-  EXPECT_EQ(run.error("log " + file.name + "\nrun 1200\nlog none\n"), "");
+  const auto text = log_of(run, "run 1200\n");
   run.lmp->modify->get_compute_by_id("e")->compute_scalar();
   const std::regex energy("friction took ([-+.e0-9]+) .*numerical errors added ([-+.e0-9]+)");
   std::smatch found;
-  const std::string text = file_text(file.name);
   ASSERT_TRUE(std::regex_search(text, found, energy));
   const double added = std::stod(found[2]) - std::stod(found[1]);
   EXPECT_NEAR(measured("watch less ledger", (added - (e[8] + e[9] - before)) / (e[0] + e[1])), 0.0,
@@ -263,9 +252,9 @@ SERIAL_TEST(Level, InSpaceAndOtherUnits)
         }
       return sum / n;
     };
-    most = std::max(most, std::fabs(mean(5.0, 8.0)));
-    off = std::max(off, std::fabs(mean(-3.0, -2.0) - mean(5.0, 8.0)));
-    off = std::max(off, std::fabs(mean(2.0, 3.0) - mean(5.0, 8.0)));
+    grow(most, mean(5.0, 8.0));
+    grow(off, mean(-3.0, -2.0) - mean(5.0, 8.0));
+    grow(off, mean(2.0, 3.0) - mean(5.0, 8.0));
   }
   EXPECT_GT(most, 1e-4);
   EXPECT_LT(measured("ground against column", off / most), 0.01);

@@ -10,6 +10,7 @@
 #include "material/material_point.h"
 #include "math/matrix.h"
 #include "patterns.h"
+#include "root_of.h"
 
 #include "gtest/gtest.h"
 
@@ -28,8 +29,10 @@
 
 namespace material_testing {
 
+using MPM_NS::Batch;
 using MPM_NS::Material;
 using MPM_NS::MaterialPoint;
+using MPM_TEST::root_of;
 
 using Matrix = std::array<double, 9>;
 constexpr Matrix IDENTITY = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -107,6 +110,21 @@ inline Matrix uniaxial_stretch(double l)
 inline double det(const Matrix &F)
 {
   return MPM_NS::determinant(F.data());
+}
+
+/** Moves a point of a batch by I + A. */
+inline void displace(Batch &b, int i, Matrix A)
+{
+  Matrix F;
+  for (int k = 0; k < 9; k++) {
+    b.A[k][i] = A[k];
+    A[k] += IDENTITY[k];
+    F[k] = b.F[k][i];
+  }
+  F = A * F;
+  for (int k = 0; k < 9; k++) b.F[k][i] = F[k];
+  b.Jold[i] = b.J[i];
+  b.J[i] = det(F);
 }
 
 inline Matrix inverse(const Matrix &M)
@@ -202,8 +220,7 @@ inline void moves(MaterialPoint &p, const Matrix &A, double dt, int n = 1)
 
 /** Makes n steps of a motion F(t), t from 0 to 1, of two points, plain and turned. The motion of
  *  the second point is rotated in addition, by an angle that grows to the given one. Calls
- *  check(plain, turned, difference) after each step; difference: of the stress from that of plain,
- *  rotated. */
+ *  check(plain, turned, difference) after each step; difference: of stress from plain, rotated. */
 template <class Motion, class Check>
 void turn_on_top(const Material &material, const Motion &F, double angle, int n, const Check &check)
 {
@@ -281,8 +298,7 @@ inline void expect_on_surface(const MaterialPoint &p, double Y, double digits_of
     EXPECT_LE(p.vonmises(), Y * (1 + 1e-12));
 }
 
-/** A wrong definition, with a part or a pattern of the error message. word: number of the word that
- *  the error is about (-1: not checked). */
+/** A wrong definition, a part or pattern of the message. word: which one it is about (-1: any). */
 struct Refusal {
   std::string text;
   const char *message;
@@ -340,8 +356,7 @@ inline void follow(MaterialPoint &p, const std::function<Matrix(double)> &L, dou
 
 /** Unknowns of a system of differential equations. */
 using State = std::vector<double>;
-/** Integrates dy/dt = f(t, y) from t = 0 to the time in n steps of the classical Runge-Kutta
- *  method. */
+/** Integrates dy/dt = f(t, y) from t = 0 in n steps of the classical Runge-Kutta method. */
 inline State runge_kutta(const std::function<State(double, const State &)> &f, State y, double time,
                          int n)
 {
@@ -402,8 +417,7 @@ inline const Sample samples[] = {
      "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 0.168 "
      "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9"},
     {"johnson/cook cold",
-     "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 "
-     "0.37 0.013 1e-3"},
+     "density 8940 eos shock 3933 1.5 2 strength johnson/cook 44e9 65e6 356e6 0.37 0.013 1e-3"},
     {"zerilli/armstrong bcc",
      "density 7870 eos linear 165e9 strength zerilli/armstrong 80e9 65e6 form bcc 1033e6 0.00698 "
      "0.000415 266e6 0.289 rate 1 thermal adiabatic 450 300 0.9"},

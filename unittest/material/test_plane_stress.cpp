@@ -4,72 +4,15 @@
 // labels: unit
 
 // Surfaces and lines: the stretch across them, and what does not resist compression. The
-// neo-Hookean law in plane stress against its own equations, solved here; pressures of balloons are
-// section R2 of the benchmarks.
+// neo-Hookean law against its own equations, solved here; balloons: benchmark R2.
 
-#include "material/material_testing.h"
-#include "material/plane_stress.h"
+#include "material/plane_stress_testing.h"
 #include "math/bag_gas.h"
 
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 constexpr double E = 1000.0;
-
-struct Surface {
-  std::unique_ptr<Material> material;
-  PlaneStress state;
-  Batch batch = {};
-  std::vector<double> history;
-  PlaneStress::Point point;
-  double old[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  int dim, along;
-
-  Surface(const std::string &text, int dim, int along, bool compression) :
-      material(make(text)), state(*material, dim, along, compression), dim(dim), along(along)
-  {
-    const double a[3] = {1.0, 0.0, 0.0}, b[3] = {0.3, 1.0, 0.0};
-    state.make_frame(a, b, point.frame);
-    history.resize(std::max<std::size_t>(1, material->history().size()) * BATCH);
-    batch.n = 1;
-    batch.dt = batch.h = batch.vol0[0] = 1.0;
-    batch.history = reinterpret_cast<double(*)[BATCH]>(history.data());
-    point.old = old;
-  }
-
-  /** Stress (a matrix) after a motion with the deformation gradient F of the whole space, of which
-   *  only what is along the body counts. */
-  Matrix go(const Matrix &F)
-  {
-    std::fill_n(point.along, 9, 0.0);
-    for (int k = 0; k < along; k++)
-      for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-          point.along[3 * i + j] += dot(&F[3 * i], point.frame[k]) * point.frame[k][j];
-    int calls = 0;
-    EXPECT_EQ(state.update(batch, &point,
-                           [&](Batch &b) {
-                             material->update(b);
-                             calls++;
-                           }),
-              -1);
-    EXPECT_EQ(calls, 1);
-    for (int c = 0; c < 9; c++) old[c] = batch.F[c][0];
-    static constexpr int voigt[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
-    Matrix s;
-    for (int c = 0; c < 9; c++) s[c] = batch.stress[voigt[c]][0];
-    return s;
-  }
-
-  double energy()
-  {
-    double w[BATCH];
-    material->stored_energy(batch, w);
-    return w[0];
-  }
-};
 
 std::string rubber(double nu)
 {
@@ -85,31 +28,18 @@ double neohookean(double nu, int k, double a, double b, double c)
   return (mu * (l[k] * l[k] - 1.0) + lambda * std::log(J)) / J;
 }
 
-/** Root of a growing function between low and high. */
-double root(double low, double high, const std::function<double(double)> &f)
-{
-  for (int k = 0; k < 200; k++) {
-    const double middle = 0.5 * (low + high);
-    (f(middle) < 0.0 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
 Matrix diagonal(double a, double b)
 {
   return {a, 0, 0, 0, b, 0, 0, 0, 1};
 }
 
-}    // namespace
-
-// stretches along both axes: nothing acts across, and the rest is that of the law with the
-// thickness which follows
+// stretches along both axes: nothing acts across, the rest is the law with that thickness
 TEST(PlaneStress, Surface)
 {
   for (const double nu : {0.0, 0.3, 0.45})
     for (const bool compression : {true, false})
       for (const auto &[a, b] : {std::pair(1.3, 1.1), std::pair(1.2, 1.2), std::pair(2.5, 1.9)}) {
-        const double c = root(1e-3, 10.0, [nu = nu, a = a, b = b](double x) {
+        const double c = root_of(1e-3, 10.0, [nu = nu, a = a, b = b](double x) {
           return neohookean(nu, 2, a, b, x);
         });
         Surface s(rubber(nu), 3, 2, compression);
@@ -137,12 +67,11 @@ TEST(PlaneStress, Balloon)
   }
 }
 
-// what is narrower than it would be by itself wrinkles, and is in uniaxial tension however narrow
-// it is
+// what is narrower than it would be by itself wrinkles, in uniaxial tension however narrow it is
 TEST(PlaneStress, Wrinkles)
 {
   const double nu = 0.3, a = 1.5;
-  const double width = root(1e-3, 2.0, [&](double x) {
+  const double width = root_of(1e-3, 2.0, [&](double x) {
     return neohookean(nu, 1, a, x, x);
   });
   const double force = neohookean(nu, 0, a, width, width) * width * width;
@@ -168,8 +97,7 @@ TEST(PlaneStress, Wrinkles)
   EXPECT_GT(slack.go(diagonal(1.1, 0.4))[0] / E, 0.05);
 }
 
-// The energy is that of the motion alone, and stress is its gradient, along any direction and
-// turned in space
+// Energy is that of the motion alone, and stress its gradient, along any direction and turned
 TEST(PlaneStress, StressIsTheGradientOfEnergy)
 {
   const double c = cos(0.8), s = sin(0.8);
@@ -208,10 +136,10 @@ TEST(PlaneStress, StressIsTheGradientOfEnergy)
 TEST(PlaneStress, Lines)
 {
   const double nu = 0.3, a = 1.4;
-  const double both = root(1e-3, 2.0, [&](double x) {
+  const double both = root_of(1e-3, 2.0, [&](double x) {
     return neohookean(nu, 1, a, x, x);
   });
-  const double one = root(1e-3, 2.0, [&](double x) {
+  const double one = root_of(1e-3, 2.0, [&](double x) {
     return neohookean(nu, 1, a, x, 1.0);
   });
   Surface cable(rubber(nu), 3, 1, false), strip(rubber(nu), 2, 1, false);
@@ -227,14 +155,13 @@ TEST(PlaneStress, Lines)
   for (auto *line : {&cable, &strip})
     for (const double c : line->go(diagonal(0.7, 1.0))) EXPECT_NEAR(c / E, 0.0, 1e-12);
   Surface truss(rubber(nu), 3, 1, true);
-  const double more = root(0.5, 3.0, [&](double x) {
+  const double more = root_of(0.5, 3.0, [&](double x) {
     return neohookean(nu, 1, 0.7, x, x);
   });
   EXPECT_NEAR(truss.go(diagonal(0.7, 1.0))[0] / neohookean(nu, 0, 0.7, more, more), 1.0, 1e-8);
 }
 
-// a metal sheet in uniaxial tension beyond yield, in many steps: strength of the law, free of
-// stress across in each of them
+// a metal sheet in uniaxial tension beyond yield: strength of the law, no stress across in any step
 TEST(PlaneStress, PlasticStrip)
 {
   Surface s("density 1 eos linear 1000 strength j2 400 1 hardening linear 0", 3, 1, true);
@@ -243,9 +170,8 @@ TEST(PlaneStress, PlasticStrip)
   EXPECT_NEAR(stress, 1.0, 2e-3);
 }
 
-// metals, rubber, concrete, glass, ice, snow: also those that yield, soften, and break, whose
-// stress has kinks and steps, go through a random motion with nothing across, up to what a stretch
-// found to 1e-11 leaves
+// metals, rubber, concrete, glass, ice, snow, whose stress has kinks and steps, go through a random
+// motion with nothing across, up to what a stretch found to 1e-11 leaves
 TEST(PlaneStress, AnyLaw)
 {
   for (const std::string name :
@@ -316,8 +242,7 @@ TEST(PlaneStress, Refuses)
             std::string::npos);
 }
 
-// gas: blow-down through a choked nozzle, section V2; filling of an empty bag, and of one that
-// holds as much before
+// gas: blow-down through a choked nozzle (V2); filling of an empty bag, and of a full one
 TEST(BagGas, BlowDownAndFilling)
 {
   const double gamma = 1.4, R = 287.0, T = 300.0, V = 0.1, p = 1e6, area = 1e-4;

@@ -4,8 +4,7 @@
 // labels: unit physics input
 // mpi: 1 2
 
-// Mixed control of a single point against closed forms, and the command mpm_point with its paths,
-// its table, and its errors.
+// Mixed control of a point against closed forms; the command mpm_point: paths, table, errors.
 
 #include "material/material_testing.h"
 #include "mpm_lammps.h"
@@ -13,19 +12,6 @@
 using namespace material_testing;
 using MPM_NS::MixedControl;
 using MPM_TEST::Scene;
-
-namespace {
-
-/** Root of a function that changes its sign between two values. */
-double root(const std::function<double(double)> &f, double a, double b)
-{
-  const bool up = f(b) > 0.0;
-  for (int k = 0; k < 200; k++) {
-    const double m = 0.5 * (a + b);
-    ((f(m) > 0.0) == up ? b : a) = m;
-  }
-  return 0.5 * (a + b);
-}
 
 // neo-Hookean solid of the tests: principal Cauchy stress along a stretch
 
@@ -41,11 +27,9 @@ double neohookean(double stretch, double J)
 /** Lateral stretch and axial stress in uniaxial stress with this lateral stress. */
 std::array<double, 2> uniaxial(double stretch, double lateral = 0.0)
 {
-  const double side = root(
-      [=](double s) {
-        return neohookean(s, stretch * s * s) - lateral;
-      },
-      0.2, 3.0);
+  const double side = root_of(0.2, 3.0, [=](double s) {
+    return neohookean(s, stretch * s * s) - lateral;
+  });
   return {side, neohookean(stretch, stretch * side * side)};
 }
 
@@ -83,10 +67,6 @@ std::map<std::string, std::vector<double>> drive(const std::string &path,
   auto table = read_table(file.name);
   return table;
 }
-
-}    // namespace
-
-/* ---------------------------------------------------------------------- mixed control */
 
 TEST(MixedControl, NeoHookeanInUniaxialStress)
 {
@@ -194,8 +174,6 @@ TEST(MixedControl, PlasticFlow)
   EXPECT_THROW(q.step(tension, 1.0), std::runtime_error);
 }
 
-/* ---------------------------------------------------------------------- paths of the command */
-
 TEST(Point, UniaxialStress)
 {
   auto t = drive("uniaxial/stress 2 time 0.25 steps 50 every 10 material " + RUBBER);
@@ -239,11 +217,9 @@ TEST(Point, BiaxialAndTriaxial)
 {
   auto t = drive("biaxial 1 strain 0.4 material " + RUBBER);
   const double a = std::exp(0.4);
-  const double thick = root(
-      [=](double s) {
-        return neohookean(s, a * a * s);
-      },
-      0.1, 2.0);
+  const double thick = root_of(0.1, 2.0, [=](double s) {
+    return neohookean(s, a * a * s);
+  });
   EXPECT_NEAR(t["Fzz"].back(), thick, 1e-12);
   EXPECT_NEAR(t["sxx"].back(), neohookean(a, a * a * thick), 1e-10 * E);
   EXPECT_NEAR(t["syy"].back(), t["sxx"].back(), 1e-10 * E);
@@ -253,11 +229,9 @@ TEST(Point, BiaxialAndTriaxial)
   ASSERT_EQ(t["step"].size(), 3);
   EXPECT_EQ(t["step"][0], -100);
   EXPECT_EQ(t["time"][1], 0.0);
-  const double start = root(
-      [=](double s) {
-        return neohookean(s, s * s * s) + P;
-      },
-      0.2, 1.0);
+  const double start = root_of(0.2, 1.0, [=](double s) {
+    return neohookean(s, s * s * s) + P;
+  });
   EXPECT_NEAR(t["Fxx"][1], start, 1e-11);
   EXPECT_NEAR(t["sxx"][1], -P, 1e-10 * E);
   EXPECT_NEAR(t["Fxx"][2], start * std::exp(-0.5), 1e-11);
@@ -337,8 +311,7 @@ TEST(Point, FormulasOfTime)
   EXPECT_NEAR(t["Fxy"][25], -1.0, 1e-12);
 }
 
-// density is in mass/distance^3 units: here g/mol/Angstrom^3, velocity in Angstrom/ps, stress in
-// bar
+// density in mass/distance^3: here g/mol/Angstrom^3, velocity in Angstrom/ps, stress in bar
 TEST(Point, Units)
 {
   auto si = drive("uniaxial/strain -1e9 strain 0.1 material density 2700 eos shock 5350 1.34 2");
@@ -350,9 +323,8 @@ TEST(Point, Units)
   EXPECT_NEAR(metal["energy"].back() * 1e5, si["energy"].back(), 1e-6 * si["energy"].back());
 }
 
-// a path that leaves two ranges of the material, one of them in many steps: one warning each, with
-// the first step; a path inside: none shear that leaves the principal stretches 10^15 apart has the
-// strain of the closed form
+// a path that leaves two ranges, one in many steps: one warning each, with the first step; shear
+// that leaves the principal stretches 10^15 apart has the strain of the closed form
 TEST(Point, StrainOfLargeShear)
 {
   for (const std::string path : {"shear 1 strain 100 steps 50", "shear 1 strain 8.2e7 steps 20"}) {
@@ -385,29 +357,17 @@ TEST(Point, LeavingARangeWarnsOnce)
   const std::string material = " material density 1000 eos linear 1e9 strength elastic 1e8 "
                                "range density 950 1020 range pressure -1e12 3.05e7";
   const auto warnings = [&](const std::string &path) {
-    const MPM_TEST::ScratchFile log("point.log");
-    {
-      Scene run("log " + log.name + "\nunits si\nmpm_point NULL " + path + material +
-                "\nlog none\n");
-    }
-    MPI_Barrier(MPI_COMM_WORLD);
-    std::vector<std::string> lines;
-    std::ifstream file(log.name);
-    for (std::string line; std::getline(file, line);)
-      if (line.find("out of the range") != std::string::npos) lines.push_back(line);
-    return lines;
+    return MPM_TEST::lines_that_say("units si\nmpm_point NULL " + path + material + "\n",
+                                    "out of the range");
   };
   EXPECT_EQ(warnings("uniaxial/strain -1 strain 0.01 steps 100").size(), 0);
-  // true strain 0.001 a step: density above 1020 from step 20, p = K (1/J - 1) above 30.5 MPa from
-  // 31
+  // true strain 0.001 a step: density above 1020 from step 20, K (1/J - 1) above 30.5 MPa from 31
   const auto found = warnings("uniaxial/strain -1 strain 0.05 steps 50");
   ASSERT_EQ(found.size(), 2);
   EXPECT_NE(found[0].find("density 1020.2 at step 20"), std::string::npos) << found[0];
   EXPECT_NE(found[1].find("pressure"), std::string::npos) << found[1];
   EXPECT_NE(found[1].find("at step 31 "), std::string::npos) << found[1];
 }
-
-/* ---------------------------------------------------------------------- errors */
 
 TEST(Point, ErrorsNameTheRemedy)
 {

@@ -15,8 +15,6 @@ using namespace material_testing;
 using MPM_NS::RandomField;
 using MPM_TEST::Scene;
 
-namespace {
-
 /** Needs FFTW: where the build lacks it, only the error is tested. */
 class Random : public ::testing::Test {
   void SetUp() override
@@ -55,8 +53,6 @@ template <class Check> void at_places(double spacing, const Check &check)
     check(x);
   }
 }
-
-}    // namespace
 
 TEST(RandomDefinition, Errors)
 {
@@ -249,8 +245,7 @@ TEST_F(Random, EveryPointHasItsOwnMaterial)
     const char *law, *value, *name;
   } cases[] = {
       {"density 7830 eos shock 4570 1.49 1.93 strength johnson/cook 79.6e9 806e6 VALUE 0.168 "
-       "0.0089 "
-       "1 1.1 1540 20 thermal adiabatic 460 20 0.9 viscosity artificial 1.5 0.06",
+       "0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9 viscosity artificial 1.5 0.06",
        "614e6", "B"},
       {"density 1000 neohookean VALUE 0.3 viscosity artificial 1.5 0.06", "1e6", "neohookean.E"},
       {"density 1000 eos tait VALUE 7 viscosity newtonian 1e-3", "2.2e9", "K"},
@@ -399,13 +394,11 @@ TEST_F(Random, TooShortLengths)
   EXPECT_EQ(message(0.25, 0.5), "");
 }
 
-// factors are those of the field at the places where points are made, on any number of ranks; they
-// stay with their points, also through a restart file
+// factors are those of the field where points are made, on any ranks, and stay after a restart
 TEST_F(Random, FixAndRestart)
 {
   const std::string scene = MPM_TEST::space("si", "f f f", "0 8 0 8 0 8", 1, 0.3) +
-      "fix grid all mpm 1.0\nregion body block 1 7 1 7 1 7\n"
-      "create_points 1 region body ppc 2\n";
+      "fix grid all mpm 1.0\nregion body block 1 7 1 7 1 7\ncreate_points 1 region body ppc 2\n";
   const std::string material =
       "fix m all mpm/material density 7800 eos linear 160e9 strength j2 80e9 "
       "300e6 random SIGMAY lognormal 0.3 1.5 11\n";
@@ -459,8 +452,7 @@ TEST_F(Random, FixAndRestart)
   }
 }
 
-// parameters of all kinds, each point with its own: the temperature that the same plastic work
-// gives, the stress of a term, and the mass
+// parameters of all kinds, each point with its own: temperature, stress of a term, mass
 TEST_F(Random, FixWithEveryKindOfParameter)
 {
   Scene run(MPM_TEST::space("si", "f f f", "0 10 0 10 0 10", 1, 0.3) +

@@ -13,15 +13,12 @@
 using namespace MPM_NS;
 using namespace material_testing;
 
-namespace {
-
 constexpr int COMPONENT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
 /** Motions of the points of a batch. */
 using Motions = std::vector<Matrix>;
 
-/** Makes the step F_new = (I + A) F of points, each with a motion of its own; t: also the
- *  tangent. */
+/** Makes the step F_new = (I + A) F of points with motions of their own; t: also the tangent. */
 void make_step(MaterialPoint &p, const Motions &A, double dt, Tangent *t = nullptr)
 {
   Batch &b = p.batch;
@@ -71,8 +68,7 @@ double largest(const Tangent &t, int i)
 
 /** Compares the tangent of a step with differences of the update, of fourth order in h. Returns the
  *  number of points with another tangent for which the differences are no derivative either, as
- *  there is a kink of the update within 2 h: those of second order in h and in 2 h, or those to
- *  both sides, do not agree. */
+ *  there is a kink of the update within 2 h: those in h and 2 h, or to both sides, do not agree. */
 int expect_tangent(const MaterialPoint &before, const Motions &A, double dt, double h,
                    double tolerance)
 {
@@ -232,8 +228,6 @@ void expect_tangents(const Sample &sample, const char *isa, unsigned seed)
 
 const char *const instruction_sets[] = {"reference", "avx2", "avx512"};
 
-}    // namespace
-
 TEST(Tangent, IsTheDerivativeOfTheUpdate)
 {
   for (const auto &sample : samples) {
@@ -381,14 +375,12 @@ TEST(Tangent, OnBothSidesOfYield)
         for (double &value : a) value *= x;
         return a;
       };
-      double low = 0.0, high = 0.1;
-      for (int bisection = 0; bisection < 50; bisection++) {
-        const double x = 0.5 * (low + high);
+      const double yields = root_of(0.0, 0.1, [&](double x) {
         MaterialPoint p(*material);
         make_step(p, {scaled(x)}, 1.0);
-        (p.batch.plastic[0] > 0.0 ? high : low) = x;
-      }
-      A.push_back(scaled(high * (i % 2 ? 1.0 + 1e-4 : 1.0 - 1e-4)));
+        return p.batch.plastic[0];
+      });
+      A.push_back(scaled(yields * (i % 2 ? 1.0 + 1e-4 : 1.0 - 1e-4)));
     }
     MaterialPoint p(*material, BATCH);
     EXPECT_EQ(expect_tangent(p, A, 1.0, 3e-9, 1e-6), 0);
@@ -397,9 +389,8 @@ TEST(Tangent, OnBothSidesOfYield)
   }
 }
 
-// without any motion, and with motions so small that squares of their strains or stresses
-// underflow, in SI units and in others whose numbers are large or small: finite, and the same as
-// that of a small motion
+// without motion, and with motions so small that squares of strains or stresses underflow, in SI
+// and other units: finite, and the same as that of a small motion
 TEST(Tangent, OfNextToNoMotion)
 {
   std::vector<Sample> all(std::begin(samples), std::end(samples));
@@ -448,8 +439,7 @@ TEST(Tangent, OfNextToNoMotion)
 
 TEST(Tangent, ConvergesQuadratically)
 {
-  // uniaxial stress after a large plastic strain, found by Newton's method for the lateral
-  // stretches
+  // uniaxial stress after a large plastic strain, by Newton's method for lateral stretches
   const auto material =
       make("density 7800 eos linear 160e9 strength j2 80e9 300e6 hardening voce 2e8 15 1e8");
   MaterialPoint before(*material);

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -19,8 +14,6 @@
 
 using namespace MPM_NS;
 using namespace material_testing;
-
-namespace {
 
 /** Sets the temperature of a point, as conduction does. */
 void warm_to(MaterialPoint &p, double T)
@@ -57,7 +50,35 @@ std::vector<Sample> expandable()
 
 constexpr const char *NO_HEAT = "adiabatic 1e30 300 0";    // a point whose own heat is nothing
 
-}    // namespace
+/** Expects the power of the stress to be what laws store and dissipate, while warm(p, t, n) changes
+ *  the temperature in a motion of n steps: of second order, unless it is within this part of the
+ *  largest power. Returns the part of it that the thermal strain has taken. */
+template <class Warm>
+double expect_balance(const Material &material, double within, const Warm &warm)
+{
+  double scale = 0.0, taken = 0.0;
+  const auto error = refined(250, [&](int n) {
+    MaterialPoint p(material, 1, 0.01);
+    double worst = 0.0;
+    const double start = p.stored_energy();
+    for (int i = 0; i < n; i++) {
+      const double t = (i + 0.5) / n;
+      warm(p, t, n);
+      steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
+      const double energy = p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS] +
+          p.work[FRACTURE] + p.work[THERMOELASTIC];
+      worst = std::max(worst, std::fabs(energy - p.power));
+      scale = std::max(scale, std::fabs(p.power));
+      taken = std::max(taken, std::fabs(p.work[THERMOELASTIC]));
+    }
+    return worst;
+  });
+  EXPECT_LT(error[2], 1e-2 * scale);
+  if (!(error[2] <= within * scale))
+    EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
+        << error[0] / scale << " " << error[2] / scale;
+  return taken / scale;
+}
 
 // with an expansion, a law has the stress, speed, and energy that it has without it at F/theta
 TEST(Expansion, IsTakenOutOfTheMotionOfAnyLaw)
@@ -95,8 +116,7 @@ TEST(Expansion, IsTakenOutOfTheMotionOfAnyLaw)
   EXPECT_GT(n, 30 * 40);
 }
 
-// no stress when nothing hinders the expansion, at small and at 30 % strain, in one step and in
-// many
+// no stress when nothing hinders expansion, at small and at 30 % strain, in one step and in many
 TEST(Expansion, FreeBodyHasNoStress)
 {
   for (const char *law :
@@ -119,8 +139,7 @@ TEST(Expansion, FreeBodyHasNoStress)
       }
 }
 
-// a bar between walls, with free sides: -E ALPHA dT, and for 30 % the stress of a compression to
-// 1/1.3
+// a bar between walls, free sides: -E ALPHA dT, and for 30 % the stress of compression to 1/1.3
 TEST(Expansion, ClampedBar)
 {
   MixedControl clamped;
@@ -157,31 +176,14 @@ TEST(Expansion, EnergyBalance)
     SCOPED_TRACE(law);
     const auto material =
         make(joined("density 1000 ", law, " thermal ", NO_HEAT, " expansion 1e-3"));
-    double scale = 0.0, taken = 0.0;
-    const auto error = refined(250, [&](int n) {
-      MaterialPoint p(*material, 1, 0.01);
-      double worst = 0.0;
-      for (int i = 0; i < n; i++) {
-        const double t = (i + 0.5) / n;
-        warm_to(p, 300 + 100 * std::sin(5 * t));
-        steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
-        const double energy = p.stored_energy() + p.work[PLASTIC] + p.work[VISCOUS] +
-            p.work[FRACTURE] + p.work[THERMOELASTIC];
-        worst = std::max(worst, std::fabs(energy - p.power));
-        scale = std::max(scale, std::fabs(p.power));
-        taken = std::max(taken, std::fabs(p.work[THERMOELASTIC]));
-      }
-      return worst;
+    const double taken = expect_balance(*material, 0.0, [](MaterialPoint &p, double t, int) {
+      warm_to(p, 300 + 100 * std::sin(5 * t));
     });
-    EXPECT_LT(error[2], 1e-2 * scale);
-    EXPECT_GT(taken, 0.05 * scale);
-    EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
-        << error[0] / scale << " " << error[2] / scale;
+    EXPECT_GT(taken, 0.05);
   }
 }
 
-// GAMMA = 3 K ALPHA/(density CP): compression warms, and is stiffer by 1 + (3 ALPHA)^2 K T/(density
-// CP)
+// GAMMA = 3 K ALPHA/(density CP): compression warms, stiffer by 1 + (3 ALPHA)^2 K T/(density CP)
 TEST(Expansion, ConsistentCoupling)
 {
   const double K = 70e9 / (3 * (1 - 2 * 0.33)), alpha = 23e-6, capacity = 2700.0 * 900;
@@ -210,8 +212,7 @@ TEST(Expansion, ConsistentCoupling)
   }
 }
 
-// what stays at constant volume is dp/dT = 3 K ALPHA: with a CP that depends on T, integral of CP/T
-// dT is
+// constant at constant volume is dp/dT = 3 K ALPHA: if CP depends on T, the integral of CP/T dT is
 // -3 K ALPHA/density (J - 1), there and back; with ALPHA that depends on T it is the coupling of
 // its value at T0
 TEST(Expansion, ConsistentCouplingOfWhatVaries)
@@ -277,8 +278,7 @@ TEST(Expansion, EachPointStartsFromItsOwnTemperature)
 }
 
 // aluminum warmed by 100 K, or strained by 1e-3: free strain, stress between walls and in a die,
-// elastic cooling, and the adiabatic bulk modulus. These are linear in what is done, of which a
-// small part is done here
+// elastic cooling, and the adiabatic bulk modulus; linear, so that a small part is done
 TEST(Expansion, Aluminum)
 {
   constexpr double PART = 1e-4;
@@ -329,12 +329,7 @@ TEST(Expansion, BadInputIsRefused)
       "density 1 ");
 }
 
-/* ---------------------------------------------------------------------- heat that is conducted */
-
-namespace {
-
-/** Equations of state with an internal energy, dp/dE at J = 1, and the bulk modulus without
- *  energy. */
+/** Equations of state with internal energy, dp/dE at J = 1, and bulk modulus without energy. */
 struct WithEnergy {
   const char *eos;
   double density, gamma, K;
@@ -345,8 +340,6 @@ const WithEnergy with_energy[] = {
     {"ideal/gas 1.4 pressure 1e5", 1.2, 0.4, 0},
     {"stiffened/gas 4.4 6e8 pressure 1e5", 1000, 3.4, 0},
 };
-
-}    // namespace
 
 // what conduction brings between steps is in the internal energy, and so in the pressure, whatever
 // the temperature has to do with the heat; without motion it is no stored energy
@@ -419,26 +412,9 @@ TEST(Conducted, EnergyBalance)
                                       gas ? " viscosity newtonian 1" : " strength j2 26e9 1e8",
                                       " thermal conducting 900 300 50 0.9",
                                       gas ? "" : " vary SIGMAY linear -1e-3 300 300 900"));
-    double scale = 0.0;
-    const auto error = refined(250, [&](int n) {
-      MaterialPoint p(*material, 1, 0.01);
-      double worst = 0.0;
-      const double start = p.stored_energy();
-      for (int i = 0; i < n; i++) {
-        const double t = (i + 0.5) / n;
-        warm_to(p, value(p, "temperature") + 500 * std::cos(5 * t) / n);
-        steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
-        const double energy =
-            p.stored_energy() - start + p.work[PLASTIC] + p.work[VISCOUS] + p.work[THERMOELASTIC];
-        worst = std::max(worst, std::fabs(energy - p.power));
-        scale = std::max(scale, std::fabs(p.power));
-      }
-      return worst;
+    expect_balance(*material, 1e-6, [](MaterialPoint &p, double t, int n) {
+      warm_to(p, value(p, "temperature") + 500 * std::cos(5 * t) / n);
     });
-    EXPECT_LT(error[2], 1e-2 * scale);
-    if (error[2] > 1e-6 * scale)
-      EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
-          << error[0] / scale << " " << error[2] / scale;
   }
 }
 
@@ -500,24 +476,9 @@ TEST(Vary, EnergyBalance)
     const auto material = make(joined("density 1000 ", law, " thermal ", NO_HEAT, " vary ",
                                       fluid ? "strength.G" : "E", " table 300 1 400 0.5",
                                       fluid ? " vary SIGMAY linear -0.004 300 300 400" : ""));
-    double scale = 0.0;
-    const auto error = refined(250, [&](int n) {
-      MaterialPoint p(*material, 1, 0.01);
-      double worst = 0.0;
-      for (int i = 0; i < n; i++) {
-        const double t = (i + 0.5) / n;
-        warm_to(p, 350 - 50 * std::cos(5 * t));
-        steps(p, Matrix{0.1, 0.1 * std::cos(7 * t), 0, 0, -0.2 * t, 0.05, 0.1, 0, 0.08}, 1.0 / n);
-        const double energy = p.stored_energy() + p.work[PLASTIC] + p.work[THERMOELASTIC];
-        worst = std::max(worst, std::fabs(energy - p.power));
-        scale = std::max(scale, std::fabs(p.power));
-      }
-      return worst;
+    expect_balance(*material, 1e-5, [](MaterialPoint &p, double t, int) {
+      warm_to(p, 350 - 50 * std::cos(5 * t));
     });
-    EXPECT_LT(error[2], 1e-2 * scale);
-    if (error[2] > 1e-5 * scale)
-      EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
-          << error[0] / scale << " " << error[2] / scale;
   }
   Point p(joined("density 1000 linear 1e6 0.3 thermal ", NO_HEAT, " vary E table 300 1 400 0.5"));
   move_to(p, uniaxial_stretch(1.01));
@@ -629,8 +590,7 @@ TEST(Vary, ShareOfPlasticWork)
       }
 }
 
-// a specific heat by a formula: the temperature has the heat that is its integral, through melting,
-// too
+// specific heat by a formula: the temperature has the heat that is its integral, also in melting
 TEST(Vary, SpecificHeatByFormula)
 {
   struct {
@@ -750,8 +710,7 @@ TEST(Vary, BadInputIsRefused)
        {"eos linear 1 strength elastic 1 damage rankine 1 weibull 5 1 7 thermal "
         "adiabatic 1 1 vary SEED table 1 1 2 2",
         "new points"},
-       {"eos jwl 1 1 1 1 1 1 1 detonate 1 1 1 1 thermal adiabatic 1 1 vary X1 table 1 1 "
-        "2 2",
+       {"eos jwl 1 1 1 1 1 1 1 detonate 1 1 1 1 thermal adiabatic 1 1 vary X1 table 1 1 2 2",
         "new points"},
        {"eos ideal/gas 1.4 energy 1 thermal adiabatic 1 1 vary E0 table 1 1 2 2", "new points"},
        // the list of what can vary has nothing that cannot
@@ -759,8 +718,6 @@ TEST(Vary, BadInputIsRefused)
         "choose one of eos.K, thermal.CP, thermal.CHI, thermal.ALPHA, thermal.SHARE$"}},
       "density 1 ");
 }
-
-/* ---------------------------------------------------------------------- sources */
 
 // the work of damage becomes heat as far as one says so
 TEST(Sources, WorkOfDamage)
@@ -786,8 +743,7 @@ TEST(Sources, WorkOfDamage)
 }
 
 // the heat of a damage is in the internal energy as it is in the temperature, and raises the
-// pressure. A point that is torn apart and pushed together again: work of the pressure is what is
-// stored, and what is set free
+// pressure. A point is torn apart and pushed together: work is what is stored and set free
 TEST(Sources, WorkOfDamageRaisesThePressure)
 {
   constexpr double SHARE = 0.6, CP = 900;
@@ -849,9 +805,7 @@ TEST(Sources, WorkOfDamageRaisesThePressure)
       }
 }
 
-// the same in any motion, with plastic work, to second order in the step as without heat; plastic
-// work that is heat in tension brings an error that has nothing to do with that of the damage, so
-// that there is none of it here
+// the same in any motion, of second order; no plastic work in tension, which has its own error
 TEST(Sources, WorkOfDamageWithPlasticWork)
 {
   const std::string start = "density 7850 eos shock 4600 1.4 2 strength j2 77e9 490e6 damage ";
@@ -883,8 +837,7 @@ TEST(Sources, WorkOfDamageWithPlasticWork)
       for (int level = 0; level < 3 && chi == 0.0; level++)
         EXPECT_LT(error[level], 6e-5 / (1 << 4 * level) * scale) << level;
     }
-  // detonation products bear no tension, but break by shear: their temperature follows from the
-  // energy
+  // detonation products bear no tension, but break by shear: temperature follows from energy
   Point p(
       "density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930 strength j2 3e9 1e8 damage "
       "johnson/cook 0.05 0 0 thermal conducting 1000 293 1 0.9 fracture 0.5");
@@ -923,8 +876,7 @@ TEST(Sources, AllDissipation)
   EXPECT_GT(n, 30);
 }
 
-// detonation products have the temperature of their thermal energy, which falls as J^-OMEGA; half
-// burnt, half of it
+// temperature of detonation products is of thermal energy, falling as J^-OMEGA; half burnt, half
 TEST(Sources, DetonationProducts)
 {
   const double A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = 7e9;
@@ -965,8 +917,7 @@ TEST(Sources, DetonationProducts)
        {tnt + "thermal adiabatic 1000 293 vary CP table 200 1 4000 2", "constant CP"}});
 }
 
-// what conduction brings to detonation products is in their temperature and internal energy once,
-// and so in the pressure, before, while, and after they burn
+// heat that is conducted into detonation products counts once, before, while, and after they burn
 TEST(Sources, DetonationProductsConduct)
 {
   const double A = 371.2e9, B = 3.231e9, R1 = 4.15, R2 = 0.95, omega = 0.3, E0 = 7e9,
@@ -1015,10 +966,6 @@ TEST(Sources, DetonationProductsConduct)
   EXPECT_NEAR(value(v, "temperature") - value(w, "temperature"), 300.0, 0.3);
 }
 
-/* ---------------------------------------------------------------------- melting */
-
-namespace {
-
 const std::string METAL =
     "density 1000 eos linear 1e6 strength j2 5e5 1e3 hardening linear 1e4 "
     "viscosity newtonian 10 liquid thermal adiabatic 1e30 300 0 melt 400 1e30";
@@ -1029,8 +976,6 @@ void melt(MaterialPoint &p, double f)
   warm_to(p, 400);
   p.batch.history[row(p.material, "molten")][0] = f;
 }
-
-}    // namespace
 
 // a melt is Newtonian, whatever the solid was; what solidifies is a new solid without shear stress
 TEST(Melting, IsALiquidThenANewSolid)

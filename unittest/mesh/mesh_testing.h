@@ -18,8 +18,7 @@ const double nodes[9][3] = {{0, 0, 0}, {1, 0, 0},       {1, 1, 0}, {0, 1, 0}, {0
 const int cube[8] = {0, 1, 2, 3, 4, 5, 6, 7}, tet[4] = {0, 3, 4, 8};
 constexpr double VOLUME = 1.25 + 1.0 / 6.0;
 
-/** A file of numbers as text, or as bytes with the least (LITTLE) or most significant one (BIG)
- *  first. */
+/** A file of numbers as text, or as bytes, the least (LITTLE) or most significant (BIG) first. */
 struct MeshOutput {
   enum Kind { TEXT, LITTLE, BIG } kind;
   std::string all;
@@ -152,8 +151,7 @@ inline std::string base64(const std::string &bytes)
 }
 
 /** The mesh as an XML file of VTK, little-endian. format: "ascii" (numbers as text), "binary"
- *  (base64 inside of the tags), or "base64" or "raw" (encoding of the data appended after the
- *  tags). */
+ *  (base64 inside of the tags), or "base64" or "raw" (data after the tags). */
 inline std::string vtu(const std::string &format)
 {
   const bool ascii = format == "ascii", inside = ascii || format == "binary";
@@ -170,8 +168,7 @@ inline std::string vtu(const std::string &format)
       if (type == "UInt8") o.put((uint8_t) v);
     }
     const std::string head =
-        strprintf("<DataArray type=\"%s\" Name=\"%s\" "
-                  "NumberOfComponents=\"%d\" format=\"%s\"",
+        strprintf("<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"%s\"",
                   type.c_str(), name.c_str(), width, inside ? format.c_str() : "appended");
     MeshOutput length{MeshOutput::LITTLE, ""};
     length.i((int) o.all.size());
@@ -210,10 +207,9 @@ inline std::string abaqus()
   for (int n = 0; n < 9; n++)
     s += strprintf("%d, %.17g, %.17g, %.17g\n", n + 1, nodes[n][0], nodes[n][1], nodes[n][2]);
   return s +
-      "*ELSET, elset=All, generate\n1, 2, 1\n"
-      "*Element, type=C3D8R, elset=core\n1, 1, 2, 3, 4,\n 5, 6, 7, 8\n"
-      "*Element, type=C3D4\n2, 1, 4, 5, 9\n*Elset, elset=side\n2,\n"
-      "*Material, name=m\n*Elastic\n1.0, 0.3\n";
+      "*ELSET, elset=All, generate\n1, 2, 1\n*Element, type=C3D8R, elset=core\n1, 1, 2, 3, 4,\n"
+      " 5, 6, 7, 8\n*Element, type=C3D4\n2, 1, 4, 5, 9\n*Elset, elset=side\n2,\n*Material, name=m\n"
+      "*Elastic\n1.0, 0.3\n";
 }
 
 }    // namespace MPM_TEST

@@ -71,8 +71,7 @@ inline Soup box(const Point &lo, const Point &hi)
   return soup;
 }
 
-/** The surface with x moved by share times z, and y by half of that. The inertia tensor of a
- *  sheared box has all components. */
+/** The surface with x moved by share times z, y by half of that: its inertia has all components. */
 inline Soup sheared(Soup soup, double share)
 {
   for (auto &t : soup)
@@ -112,8 +111,7 @@ inline Soup both(Soup soup, const Soup &other)
   return soup;
 }
 
-/** Ball of the given radius: an icosahedron whose triangles are divided into four this many
- *  times. */
+/** Ball of this radius: an icosahedron whose triangles are divided into four this many times. */
 inline Soup ball(double radius, int divisions)
 {
   const auto onto = [](Point x) {
@@ -147,8 +145,7 @@ inline Soup ball(double radius, int divisions)
   return soup;
 }
 
-/** Prism over a polygon, from z = 0 to the height. cut: triangles of the polygon, by their
- *  corners. */
+/** Prism over a polygon, from z = 0 to height. cut: triangles of the polygon, by corners. */
 inline Soup prism(const std::vector<std::array<double, 2>> &p, double height,
                   const std::vector<std::array<int, 3>> &cut)
 {
@@ -223,8 +220,7 @@ inline std::vector<Solid> solids()
        26000}};
 }
 
-/** The triangles as an OBJ file. Every other triangle refers to its corners by negative numbers,
- *  which count backward from the last corner. */
+/** The triangles as an OBJ file, every other one by negative numbers, from the last corner back. */
 inline std::string obj_of(const Soup &soup)
 {
   std::string s = "# a comment\no thing\n";

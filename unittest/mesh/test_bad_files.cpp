@@ -5,8 +5,7 @@
 // timeout: 300
 
 // Files of bodies that are cut, changed, or nonsense, in all formats: each is read, or is an error
-// that begins with the name of the file; nothing crashes or takes long. Builds with MPM_SANITIZE
-// see each access beyond the end.
+// that begins with the name of the file; nothing crashes or takes long.
 
 #include "bad_input_testing.h"
 #include "image/image_testing.h"
@@ -22,8 +21,6 @@
 #include <new>
 
 using namespace MPM_TEST;
-
-namespace {
 
 using Reader = std::function<void(const std::string &file)>;
 
@@ -72,15 +69,12 @@ std::string obj()
 std::string vtp()
 {
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" "
-         "header_type=\"UInt64\">\n"
-         "<PolyData>\n<Piece NumberOfPoints=\"2\">\n<PointData>\n"
+         "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"2\">\n<PointData>\n"
          "<DataArray type=\"Float32\" Name=\"velocity\" NumberOfComponents=\"3\" "
-         "format=\"ascii\">1 2 3 4 5 6</DataArray>\n"
-         "<DataArray type=\"Float64\" Name=\"volume0\" format=\"appended\" "
-         "offset=\"0\"/>\n</PointData>\n<Points>\n"
-         "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 1 "
-         "1</DataArray>\n</Points>\n"
-         "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" +
+         "format=\"ascii\">1 2 3 4 5 6</DataArray>\n<DataArray type=\"Float64\" Name=\"volume0\" "
+         "format=\"appended\" offset=\"0\"/>\n</PointData>\n<Points>\n<DataArray type=\"Float64\" "
+         "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 1 1</DataArray>\n</Points>\n</Piece>\n"
+         "</PolyData>\n<AppendedData encoding=\"raw\">\n_" +
       bytes_of((int64_t) 16) + bytes_of(1.0) + bytes_of(2.0) + "\n</AppendedData>\n</VTKFile>\n";
 }
 
@@ -130,8 +124,7 @@ INSTANTIATE_TEST_SUITE_P(All, BadFiles, ::testing::ValuesIn(formats()), [](const
   return info.param.name;
 });
 
-/** What a reader says to a file, empty: it reads it. Any other exception or a signal ends the
- *  test. */
+/** What a reader says to a file; empty: it reads it. Other exceptions end the test. */
 std::string said(const Format &format, const std::string &text)
 {
   const ScratchFile file(format.name.find("Obj") == 0 ? "bad.obj" : "bad", text);
@@ -389,5 +382,3 @@ TEST_P(BadFilesInLammps, AreExplained)
   EXPECT_TRUE(contains(text, defect.error)) << "expected: " << defect.error << "\nfound: " << text;
   EXPECT_TRUE(contains(text, file.name)) << "which file: " << text;
 }
-
-}    // namespace

@@ -16,8 +16,6 @@
 using namespace MPM_NS;
 using ::testing::HasSubstr;
 
-namespace {
-
 Mesh read(const std::string &text)
 {
   std::istringstream in(text);
@@ -85,20 +83,18 @@ TEST(Mesh, Format22)
   EXPECT_THROW(mesh.keep(3), std::runtime_error);
 }
 
-// a unit cube as a hexahedron, a tetrahedron on it, and a quadrangle of its surface; nodes in two
-// blocks, one with parameters; a section of data
+// a cube as a hexahedron, a tetrahedron, and a quadrangle; two blocks of nodes, a section of data
 TEST(Mesh, Format41)
 {
   Mesh mesh =
       read(FORMAT_4 +
-           "$PhysicalNames\n1\n3 2 \"solid\"\n$EndPhysicalNames\n"
-           "$Entities\n1 1 1 2\n1 0 0 0 0\n1 0 0 0 1 0 0 0 2 1 -1\n"
-           "1 0 0 0 1 1 0 1 4 1 1\n1 0 0 0 1 1 1 1 2 1 1\n2 0 0 0 1 1 1 0 0\n$EndEntities\n"
-           "$Nodes\n2 9 1 20\n2 1 1 4\n1\n2\n3\n4\n0 0 0 0 0\n1 0 0 0 0\n1 1 0 0 0\n0 1 0 0 0\n"
-           "3 1 0 5\n5\n6\n7\n8\n20\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n0 0 2\n$EndNodes\n"
-           "$Elements\n3 3 1 3\n2 1 3 1\n1 1 2 3 4\n3 1 5 1\n2 5 6 7 8 1 2 3 4\n"
-           "3 2 4 1\n3 5 6 8 20\n$EndElements\n"
-           "$InterpolationScheme\n1 \"$x\" 3 4\n$EndInterpolationScheme\n");
+           "$PhysicalNames\n1\n3 2 \"solid\"\n$EndPhysicalNames\n$Entities\n1 1 1 2\n1 0 0 0 0\n"
+           "1 0 0 0 1 0 0 0 2 1 -1\n1 0 0 0 1 1 0 1 4 1 1\n1 0 0 0 1 1 1 1 2 1 1\n"
+           "2 0 0 0 1 1 1 0 0\n$EndEntities\n$Nodes\n2 9 1 20\n2 1 1 4\n1\n2\n3\n4\n0 0 0 0 0\n"
+           "1 0 0 0 0\n1 1 0 0 0\n0 1 0 0 0\n3 1 0 5\n5\n6\n7\n8\n20\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+           "0 0 2\n$EndNodes\n$Elements\n3 3 1 3\n2 1 3 1\n1 1 2 3 4\n3 1 5 1\n2 5 6 7 8 1 2 3 4\n"
+           "3 2 4 1\n3 5 6 8 20\n$EndElements\n$InterpolationScheme\n1 \"$x\" 3 4\n"
+           "$EndInterpolationScheme\n");
   ASSERT_EQ(mesh.elements.size(), 3u);
   EXPECT_EQ(mesh.nodes.size(), 9u);
   EXPECT_EQ(element_dimension(mesh.elements[1].type), 3);
@@ -137,5 +133,3 @@ TEST(Mesh, Refused)
               HasSubstr("elements 8 and 9"));
   EXPECT_THROW(read_gmsh("no such file"), std::runtime_error);
 }
-
-}    // namespace

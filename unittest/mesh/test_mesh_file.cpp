@@ -11,8 +11,6 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 const std::string space_2 = space("lj", "f f f", "-2 4 -2 4 -2 4", 2);
 
 std::string make(const std::string &file, const std::string &style, const std::string &more = "")
@@ -52,8 +50,7 @@ std::string turned_cube(double angle, double top)
 TEST(MeshFile, VolumesOfTwistedElements)
 {
   const double pi = 3.14159265358979323846;
-  // section at height z: the corner goes along a line, so its distance squared is (1-z)^2 + 2 z
-  // (1-z) s c + z^2 s^2
+  // section at z: the corner goes along a line, distance squared (1-z)^2 + 2 z (1-z) s c + z^2 s^2
   const auto exact = [](double angle, double s) {
     return (1.0 + s * std::cos(angle) + s * s) / 3.0;
   };
@@ -122,8 +119,7 @@ TEST(MeshFile, TypesAndGroups)
   expect_error(space_2 + make(two.name, "elements", "types physical"), "in the sets");
 }
 
-// parts of Abaqus are where instances put them, moved and turned; sets of parts have elements of
-// all of them, those of the assembly of one
+// parts of Abaqus are where instances put them; sets of parts: of all, of the assembly: of one
 TEST(MeshFile, PartsOfAbaqus)
 {
   const std::string cube = "*PART, NAME=Cube\n*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,2\n"
@@ -132,11 +128,10 @@ TEST(MeshFile, PartsOfAbaqus)
                     tet = "*Part, name=Tet\n*Node\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n"
                           "*Element, type=C3D4, elset=all\n1, 1,2,3,4\n*End Part\n",
                     assembly = "*Assembly, name=a\n*Instance, name=c-1, part=Cube\n*End Instance\n"
-                               "*Instance, name=c-2, part=CUBE\n0, 0, 3\n"
-                               "0, 0, 3, 1, 0, 3, 90\n*End Instance\n"
-                               "*Instance, name=t-1, part=tet\n5, 0, 0\n*End Instance\n"
-                               "*Node\n1, 9, 9, 9\n*Elset, elset=one, instance=c-2\n1\n"
-                               "*Elset, elset=two\none, t-1\n*End Assembly\n";
+                               "*Instance, name=c-2, part=CUBE\n0, 0, 3\n0, 0, 3, 1, 0, 3, 90\n"
+                               "*End Instance\n*Instance, name=t-1, part=tet\n5, 0, 0\n"
+                               "*End Instance\n*Node\n1, 9, 9, 9\n*Elset, elset=one, instance=c-2\n"
+                               "1\n*Elset, elset=two\none, t-1\n*End Assembly\n";
   const std::string space = box(3, "si", "f f f", "-4 7 -4 7 -4 7", 1, 0.2);
   const auto scene = [&](const std::string &text) {
     const ScratchFile file("parts.inp", text);
@@ -263,10 +258,9 @@ TEST(MeshFile, DataAreThoseOfTables)
       "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n"
       "0 0 0 1 0 0 2 0 0 0 1 0 1 1 0 2 1 0\nCELLS 2 10\n4 0 1 4 3\n4 1 2 5 4\nCELL_TYPES 2\n9\n9\n"
       "CELL_DATA 2\nFIELD all 7\nJ 9 2 double\n1.25 0.5 0 0 1 0 0 0 1 2 0 0 0 1 0 0 0 1\n"
-      "sigma 6 2 double\n1 2 3 4 0 0 -1 -2 -3 -4 0 0\n"
-      "tensor 9 2 double\n1 4 0 4 2 0 0 0 3 -1 -4 0 -4 -2 0 0 0 -3\n"
-      "ep 1 2 double\n0.125 0.5\nu 2 2 double\n1 2 3 4\nw 3 2 double\n1 2 3 4 5 6\nm 1 2 double\n3 "
-      "5\n";
+      "sigma 6 2 double\n1 2 3 4 0 0 -1 -2 -3 -4 0 0\ntensor 9 2 double\n"
+      "1 4 0 4 2 0 0 0 3 -1 -4 0 -4 -2 0 0 0 -3\nep 1 2 double\n0.125 0.5\nu 2 2 double\n1 2 3 4\n"
+      "w 3 2 double\n1 2 3 4 5 6\nm 1 2 double\n3 5\n";
   const std::string table =
       "x,y,volume,F:0,F:1,F:2,F:3,F:4,F:5,F:6,F:7,F:8,stress/xx,stress/yy,stress/zz,stress/xy,"
       "stress/xz,stress/yz,eplastic,vx,vy,d2_w:0,d2_w:1,d2_w:2,mass\n"
@@ -334,5 +328,3 @@ SERIAL_TEST(MeshFile, RefusesMistakes)
   EXPECT_THAT(failure(replaced(inp, "1.5", "1.5e999")), HasSubstr("is not a coordinate"));
   EXPECT_THAT(failure(""), HasSubstr("not a mesh file of Gmsh"));
 }
-
-}    // namespace

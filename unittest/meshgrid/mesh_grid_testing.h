@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_MESH_GRID_TESTING_H
 #define MPM_MESH_GRID_TESTING_H
@@ -12,9 +12,9 @@ namespace MPM_TEST {
 
 enum Kind { TRIANGLES, QUADS, TETRAHEDRA, HEXAHEDRA };
 
-/** A mesh file of Gmsh (format 2.2) of a block of n cells along the axes: elements of one kind in the
- *  group "body", and its sides in the groups "xlo" to "zhi". Triangles and quads are in the plane z = 0,
- *  with edges as sides. map: position of a node from its coordinates 0 to 1 in the block. */
+/** A mesh file of Gmsh (format 2.2) of a block of n cells along the axes: elements of one kind in
+ *  the group "body", sides in the groups "xlo" to "zhi". Triangles and quads are in z = 0, with
+ *  edges as sides. map: position of a node from its coordinates 0 to 1 in the block. */
 inline std::string gmsh(Kind kind, const std::array<int, 3> &n,
                         const std::function<std::array<double, 3>(double, double, double)> &map)
 {

@@ -1,19 +1,17 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 300
 
-// Fix mpm/mesh/contact: bodies on one mesh that touch, slide, and part, against Coulomb's law, the exact motion of bars that
-// collide, and the weights of what lies on what.
+// Fix mpm/mesh/contact: bodies on one mesh that touch, slide, and part, against Coulomb's law, the
+// exact motion of bars that collide, and the weights of what lies on what.
 
 #include "meshgrid/mesh_grid_testing.h"
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 /** A mesh of cells of size h from the origin, inside bent by a part of these. */
 std::string cells(Kind kind, double h, std::array<int, 3> n, double bent = 0.0)
@@ -57,8 +55,6 @@ std::string slide(Kind kind, const std::string &mesh, const std::string &law,
       "0.9\nvariable v equal vcm(b2,x)\n";
 }
 
-}    // namespace
-
 // Coulomb's law; without friction the block keeps its velocity, as nothing is in its way
 SERIAL_TEST(MeshContact, BlockThatSlides)
 {
@@ -85,8 +81,8 @@ SERIAL_TEST(MeshContact, BlockThatSlides)
   }
 }
 
-// Static friction holds up to its coefficient; what is above slides with the kinetic one; stick does not slide. The block has
-// settled before it is pulled, more and more for a time of 0.3
+// Static friction holds up to its coefficient; what is above slides with the kinetic one; stick
+// does not slide. The block has settled before it is pulled, more and more for a time of 0.3
 SERIAL_TEST(MeshContact, BlockThatIsPulled)
 {
   const ScratchFile file("slide.msh", cells(QUADS, 0.1, {24, 13, 0}));
@@ -103,7 +99,7 @@ SERIAL_TEST(MeshContact, BlockThatIsPulled)
                            until));
     return run.variable("x") - x;
   };
-  // what is held moves by its shear, rho a H (H/2 + H_floor)/G: the floor is longer than the block, and moves less
+  // what is held moves by rho a H (H/2 + H_floor)/G: the floor is longer, and moves less
   const double shear = 0.5 / 385 * (0.5 / 2 + 0.5);
   EXPECT_LT(measured("way of a block that is held", way("law coulomb 0.4", 0.3, 1.0)), 0.3 * shear);
   EXPECT_LT(measured("by static friction only", way("law coulomb 0.1 0.4", 0.15, 1.0)),
@@ -111,8 +107,8 @@ SERIAL_TEST(MeshContact, BlockThatIsPulled)
   EXPECT_LT(measured("way of one that sticks", way("law stick", 1.0, 1.0)), shear);
 }
 
-// Two equal bars that meet exchange their velocities: they touch when they should, part when the waves are back, and their
-// momentum is what it was to the last digit
+// Two equal bars that meet exchange their velocities: they touch when they should, part when the
+// waves are back, and their momentum is what it was to the last digit
 SERIAL_TEST(MeshContact, BarsThatCollide)
 {
   double lost[2];
@@ -134,8 +130,7 @@ SERIAL_TEST(MeshContact, BarsThatCollide)
                 "\nfix touch all mpm/mesh/contact g b1 b2\nvelocity b1 set 0.01 0 0\n"
                 "velocity b2 set -0.01 0 0\ntimestep " +
                 strprintf("%g", 0.25 * h) +
-                "\nvariable a equal vcm(b1,x)\nvariable b equal "
-                "vcm(b2,x)\nrun 0\n");
+                "\nvariable a equal vcm(b1,x)\nvariable b equal vcm(b2,x)\nrun 0\n");
       double first = 0.0, worst = 0.0, impulse = 0.0, mean = 0.0;
       while (run.evaluate("time") < 6.5) {
         run.commands("run 1 post no\n");
@@ -157,8 +152,7 @@ SERIAL_TEST(MeshContact, BarsThatCollide)
   EXPECT_GT(lost[0] / lost[1], 1.25);    // a wave front, which is never smooth
 }
 
-// What lies on each other, at rest: each bears the weight of what is above. The upper two lie side by side, so that three bodies
-// meet at nodes
+// At rest each bears the weight above; the upper two are side by side: three bodies at a node
 SERIAL_TEST(MeshContact, BlocksAtRest)
 {
   for (const Kind kind : {QUADS, TRIANGLES}) {
@@ -173,8 +167,7 @@ SERIAL_TEST(MeshContact, BlocksAtRest)
         "fix down all gravity 1 vector 0 -1 0\nfix slow all viscous 0.02\n"
         "variable one equal f_touch[1][2]\nvariable two equal f_touch[2][2]\n"
         "variable side equal f_touch[3][1]+f_touch[2][1]\n"
-        "fix mean all ave/time 1 400 400 v_one v_two v_side\n"
-        "fix d all mpm/dt 0.4\nrun 1200\n");
+        "fix mean all ave/time 1 400 400 v_one v_two v_side\nfix d all mpm/dt 0.4\nrun 1200\n");
     auto *mean = run.lmp->modify->get_fix_by_id("mean");
     EXPECT_NEAR(measured("weight of the first", mean->compute_vector(0) / 0.3), 1.0, 0.02);
     EXPECT_NEAR(measured("weight of the second", mean->compute_vector(1) / 0.15), 1.0, 0.02);
@@ -183,26 +176,20 @@ SERIAL_TEST(MeshContact, BlocksAtRest)
   }
 }
 
-namespace {
-
-/** A block on a block between smooth walls, under a load on the upper side of the mesh. parts: the upper one is two of them. */
+/** A block on a block between smooth walls, a load on top of the mesh. parts: two upper blocks. */
 std::string pressed(const std::string &mesh, const std::string &load, bool parts)
 {
   return box(2, "lj", "f f p", "0 1.6 0 1 -0.5 0.5", 3, 0.1) +
       block(1, "0 1.6 0 0.5", "-0.5 0.5", 0.05) +
       block(2, parts ? "0 0.8 0.5 1" : "0 1.6 0.5 1", "-0.5 0.5", 0.05) +
       (parts ? block(3, "0.8 1.6 0.5 1", "-0.5 0.5", 0.05) : "") +
-      "fix m all mpm/material density 1 neohookean 1000 0.3\n"
-      "fix g all mpm/mesh " +
-      mesh + " velocity ylo 0 0 slip xlo slip xhi " + load +
-      "\nfix touch all mpm/mesh/contact g b1 b2" + (parts ? " b3" : "") +
-      "\ntimestep 5e-4\nthermo_modify norm no\n";
+      "fix m all mpm/material density 1 neohookean 1000 0.3\nfix g all mpm/mesh " + mesh +
+      " velocity ylo 0 0 slip xlo slip xhi " + load + "\nfix touch all mpm/mesh/contact g b1 b2" +
+      (parts ? " b3" : "") + "\ntimestep 5e-4\nthermo_modify norm no\n";
 }
 
-}    // namespace
-
-// A load on a side of the mesh is of the body that is there: the force of contact becomes the load, and each step changes
-// the momentum of the upper block by load and contact
+// A load on a side of the mesh is of the body that is there: the force of contact becomes the load,
+// and each step changes the momentum of the upper block by load and contact
 SERIAL_TEST(MeshContact, PressedBlock)
 {
   for (const Kind kind : {QUADS, TRIANGLES})
@@ -224,7 +211,7 @@ SERIAL_TEST(MeshContact, PressedBlock)
                    "fix mean all ave/time 1 400 400 v_f\nrun 2000\n");
       const double mean = run.lmp->modify->get_fix_by_id("mean")->compute_scalar();
       EXPECT_NEAR(measured(std::string(load) + ": contact over load", mean / 8.0), 1.0, 0.01);
-      // uniaxial strain; in triangles, points on sides between these make bodies softer, without contact, too
+      // uniaxial strain; points on sides of triangles make bodies softer, without contact, too
       if (kind != QUADS) continue;
       double top = 0.0, n = 0.0;
       for (int i = 0; i < run.n(); i++)
@@ -237,7 +224,7 @@ SERIAL_TEST(MeshContact, PressedBlock)
     }
 }
 
-// Where two bodies meet at the side, each has its share of the load: nothing of it is lost, and nothing is there twice
+// Where two bodies meet at the side, each has its share of the load: none is lost or there twice
 SERIAL_TEST(MeshContact, LoadOfTwoBodies)
 {
   const ScratchFile file("pressed.msh", cells(QUADS, 0.1, {16, 10, 0}));
@@ -250,10 +237,8 @@ SERIAL_TEST(MeshContact, LoadOfTwoBodies)
                 1.0, 1e-12);
   EXPECT_NEAR(run.evaluate("f_g[15]"), -8.0, 1e-12);
   // the second body is part of the upper side, which bears all of the load
-  EXPECT_EQ(
-      lines_that_say(pressed(file.name, "pressure yhi 5", true) + "run 1\n", "acts on nothing")
-          .size(),
-      0u);
+  EXPECT_EQ(times_said(pressed(file.name, "pressure yhi 5", true) + "run 1\n", "acts on nothing"),
+            0);
 }
 
 TEST(MeshContact, LoadOnRanksAndAfterARestart)
@@ -346,9 +331,8 @@ SERIAL_TEST(MeshContact, BadInput)
         "use frame updated"},
        {"unfix g\nfix g all mpm/mesh " + file.name + " transfer apic\n" + fix + "g b1 b2\nrun 1",
         "use transfer flip"}});
-  EXPECT_EQ(lines_that_say(good + "displace_atoms b2 move 0 -0.1 0\n" + fix + "g b1 b2\nrun 1\n",
-                           "bodies overlap at the start of the run")
-                .size(),
-            1u);
-  EXPECT_EQ(lines_that_say(good + fix + "g b1 b2\nrun 1\n", "bodies overlap").size(), 0u);
+  EXPECT_EQ(times_said(good + "displace_atoms b2 move 0 -0.1 0\n" + fix + "g b1 b2\nrun 1\n",
+                       "bodies overlap at the start of the run"),
+            1);
+  EXPECT_EQ(times_said(good + fix + "g b1 b2\nrun 1\n", "bodies overlap"), 0);
 }

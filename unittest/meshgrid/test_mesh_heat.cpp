@@ -1,21 +1,19 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input ranks
 // mpi: 1 4
 
-// Fix mpm/mesh/heat: conduction between points on a mesh, with temperatures, fluxes, and convection at its groups.
+// Fix mpm/mesh/heat: conduction on a mesh; temperatures, fluxes, and convection at its groups.
 
 #include "bad_input_testing.h"
 #include "meshgrid/mesh_grid_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
 using Map = std::function<std::array<double, 3>(double, double, double)>;
 
-/** A block of 1 x 1 x 1 (2d: 1 x 1), whose inner nodes are moved by a part of a cell, of rectangles along the axes. */
+/** A block of 1 x 1 x 1 (2d: 1 x 1) of rectangles, inner nodes are moved by a part of a cell. */
 std::string block(Kind kind, int n)
 {
   if (kind == QUADS || kind == HEXAHEDRA)
@@ -53,8 +51,7 @@ std::string scene(int dim, const std::string &file, const std::string &heat,
 /** [local atom] */
 const double *temperatures(Scene &run)
 {
-  auto *compute = run.lmp->modify->get_compute_by_id("T");
-  compute->compute_peratom();
+  auto *compute = run.per_atom("T");
   return compute->vector_atom;
 }
 double out(Scene &run, int k)
@@ -62,10 +59,9 @@ double out(Scene &run, int k)
   return run.lmp->modify->get_fix_by_id("h")->compute_vector(k);
 }
 
-}    // namespace
-
-// A temperature that is linear in x is that of any mesh of triangles and tetrahedra, exactly, and so is its flux; of quadrangles and hexahedra
-// where they are not bent, as points integrate over bent ones with an error of second order in their distance
+// A temperature that is linear in x is that of any mesh of triangles and tetrahedra, exactly, and
+// so is its flux; of quadrangles and hexahedra where they are not bent, as points integrate over
+// bent ones with an error of second order in their distance
 SERIAL_TEST(MeshHeat, Patch)
 {
   for (const Kind kind : {TRIANGLES, QUADS, TETRAHEDRA, HEXAHEDRA}) {
@@ -75,8 +71,7 @@ SERIAL_TEST(MeshHeat, Patch)
               "timestep 0.05\nrun 80\n");
     const double *const T = temperatures(run);
     double most = 0.0;
-    for (int i = 0; i < run.n(); i++)
-      most = std::max(most, std::fabs(T[i] - 1.0 - 2.0 * run.x()[i][0]));
+    for (int i = 0; i < run.n(); i++) grow(most, T[i] - 1.0 - 2.0 * run.x()[i][0]);
     EXPECT_LT(measured("error of the temperature", most), 1e-12);
     EXPECT_NEAR(out(run, 0), -2.0, 1e-11);
     EXPECT_NEAR(out(run, 2), 2.0, 1e-11);
@@ -111,8 +106,7 @@ SERIAL_TEST(MeshHeat, Ring)
   }
 }
 
-// A slab that is insulated on one side and cooled by convection on the other, Bi = 1 (benchmark M2a), in steps below and above the
-// explicit limit
+// A slab cooled by convection, Bi = 1 (M2a), in steps below and above the explicit limit
 SERIAL_TEST(MeshHeat, Slab)
 {
   const ScratchFile file("slab.msh", gmsh(QUADS, {20, 2, 0}, [](double x, double y, double) {
@@ -132,15 +126,15 @@ SERIAL_TEST(MeshHeat, Slab)
           n[k] += 1.0;
         }
     }
-    // at a quarter of a cell from the ends: cos(0.86033 x) is flat at the one, and has a slope of -0.4 at the other
+    // at a quarter of a cell from the ends: cos(0.86033 x) is flat at the one, and has a slope of
+    // -0.4 at the other
     EXPECT_NEAR(measured("insulated side", ends[0] / n[0]), 0.772526, 0.004);
     EXPECT_NEAR(measured("cooled side", ends[1] / n[1] - 0.0125 * 0.504522), 0.504522, 0.004);
     EXPECT_NEAR(all - 0.1, out(run, 1), 1e-14);    // mass 0.1
   }
 }
 
-// Heat comes in on one side and leaves by convection on the other: T = T_0 + q/h + q (1 - x)/k, with k along x of a material that is
-// turned by a right angle
+// Heat in on one side, convection on the other: T = T_0 + q/h + q (1 - x)/k, k of a turned material
 SERIAL_TEST(MeshHeat, FluxAndConvection)
 {
   const ScratchFile file("block.msh", block(TETRAHEDRA, 2));
@@ -153,7 +147,7 @@ SERIAL_TEST(MeshHeat, FluxAndConvection)
   EXPECT_NEAR(out(run, 2), -2.0, 1e-10);
 }
 
-// A body that is stretched along the flow by 1.5 conducts less, by that factor, and one that is stretched across more
+// A body stretched by 1.5 along the flow conducts less, by that factor, across it more
 SERIAL_TEST(MeshHeat, OfAStretchedBody)
 {
   for (const bool along : {true, false}) {
@@ -194,8 +188,8 @@ TEST(MeshHeat, RanksAndRestart)
   EXPECT_EQ(run.whole.fix("h")->compute_scalar(), run.again.fix("h")->compute_scalar());
 }
 
-// Two layers of conductivities 1 and 10, from x = 0.5 or in the middle of the next cells: with the conductivities of the points 8 and 4 % too much heat
-// went through the latter. Not so with means, also in a body that is stretched along or across the layers; triangles have an error of first order
+// Two layers of conductivities 1 and 10, from x = 0.5 or in the middle of the next cells: 8 and 4 %
+// too much heat with those of points, not so with means
 SERIAL_TEST(MeshHeat, LayersThatCutCells)
 {
   for (const Kind kind : {QUADS, TRIANGLES})
@@ -210,21 +204,19 @@ SERIAL_TEST(MeshHeat, LayersThatCutCells)
               "mpm/material density 1 linear 1e-8 0.3 thermal conducting";
           return box(2, "lj", "f f f", "-1 4 -1 4 -1 4", 2, 0.1) +
               strprintf("create_points 1 elements %s halve 1\n"
-                        "region behind block %.17g INF INF INF INF INF\n"
-                        "set region behind type 2\ngroup front type 1\ngroup behind type 2\n"
-                        "fix m front %s 1 0 1\nfix m2 behind %s 1 0 %s\n"
-                        "fix g all mpm/mesh %s frame total\n"
+                        "region behind block %.17g INF INF INF INF INF\nset region behind type 2\n"
+                        "group front type 1\ngroup behind type 2\nfix m front %s 1 0 1\n"
+                        "fix m2 behind %s 1 0 %s\nfix g all mpm/mesh %s frame total\n"
                         "fix h all mpm/mesh/heat g temperature xlo 1 temperature xhi 0\n"
                         "timestep 0.002\n",
                         file.name.c_str(), at, conducting, conducting, behind, file.name.c_str());
         };
         const auto told = [&](const char *behind) {
-          return lines_that_say(layers(behind) + "run 1\n", "interfaces that are not along sides")
-              .size();
+          return times_said(layers(behind) + "run 1\n", "interfaces that are not along sides");
         };
-        EXPECT_EQ(told("10"), 0u);
-        EXPECT_EQ(told("10 orthotropic 10 10"), cut ? 1u : 0u);
-        EXPECT_EQ(told("2 orthotropic 2 2"), 0u);
+        EXPECT_EQ(told("10"), 0);
+        EXPECT_EQ(told("10 orthotropic 10 10"), cut ? 1 : 0);
+        EXPECT_EQ(told("2 orthotropic 2 2"), 0);
         for (const int axis : {0, 1, 2}) {
           if (axis && (kind == TRIANGLES || n == 16)) continue;
           Scene run(layers("10"));
@@ -242,8 +234,9 @@ SERIAL_TEST(MeshHeat, LayersThatCutCells)
       }
 }
 
-// Water of 10 degrees freezes below a wall of -20, and ice of -10 melts on one of 20, for an hour (Neumann: 27.765 mm, 12.823 mm), wherever the
-// table of the conductivity has its jump next to the melting temperature. Partly molten points had that of one phase: 24.2 and 15.2 mm
+// Water of 10 degrees freezes below a wall of -20, and ice of -10 melts on one of 20, for an hour
+// (Neumann: 27.765 mm, 12.823 mm), wherever the table of the conductivity has its jump next to the
+// melting temperature. Partly molten points had that of one phase: 24.2 and 15.2 mm
 SERIAL_TEST(MeshHeat, FrontsDoNotSeeTheSideOfTheJump)
 {
   const int n = 100;
@@ -264,8 +257,7 @@ SERIAL_TEST(MeshHeat, FrontsDoNotSeeTheSideOfTheJump)
           "fix g all mpm/mesh " + file.name + " frame total\n" +
           strprintf("fix h all mpm/mesh/heat g temperature xlo %g\n", melts ? 293.15 : 253.15) +
           "timestep 3.0\ncompute f all mpm/atom molten volume\nrun 1200\n");
-      auto *const compute = run.lmp->modify->get_compute_by_id("f");
-      compute->compute_peratom();
+      auto *const compute = run.per_atom("f");
       double molten = 0.0;
       for (int i = 0; i < run.n(); i++)
         molten += compute->array_atom[i][0] * compute->array_atom[i][1] / 0.02;

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics input
 // mpi: 1 2
@@ -9,7 +9,6 @@
 
 #include "mpm_lammps.h"
 
-#include <fstream>
 #include <sstream>
 
 using namespace MPM_TEST;
@@ -32,9 +31,8 @@ compute d all displace/atom
 TEST(ErrorNorms, AreThoseOfTheDefinition)
 {
   Scene run(block +
-            "compute e all mpm/error vx v_one vy v_two\n"
-            "compute x all mpm/error x v_right\nthermo_style custom step c_e "
-            "c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
+            "compute e all mpm/error vx v_one vy v_two\ncompute x all mpm/error x v_right\n"
+            "thermo_style custom step c_e c_e[1] c_e[2] c_e[3] c_e[4] c_e[5] c_x\nrun 0\n");
   EXPECT_NEAR(run.evaluate("c_e"), 0.1 * std::sqrt(0.5), 1e-14);    // half of the points are off
   EXPECT_NEAR(run.evaluate("c_e[2]"), 0.1, 1e-14);
   EXPECT_NEAR(run.evaluate("c_e[3]"), std::sqrt(0.09 + 0.5 * (0.16 + 0.09)), 1e-14);
@@ -49,8 +47,7 @@ TEST(ErrorNorms, AreThoseOfTheDefinition)
   EXPECT_NEAR(run.evaluate("c_e[5]"), 0.1, 1e-14);
 }
 
-// points of the group only, with their volumes as weights, at unwrapped positions; an error that is not a
-// number stays one, whichever point has it
+// points of the group, by volume, at unwrapped positions; an error that is no number stays one
 TEST(ErrorNorms, VolumesGroupsAndImages)
 {
   Scene run(space("lj", "p p p", "0 4 0 4 0 4", 3) + R"(

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit output smoke ranks
 // mpi: 1 2
@@ -118,8 +118,7 @@ class VTKReader {
 
 // ---------------------------------------------------------------- points with a state set by hand
 
-/** Points 1 and 2 of a neo-Hookean material, 3 and 4 of an elastic-plastic one; atom 5 is not a
- *  material point. With two processes each has some of them. */
+/** Points 1 and 2: neo-Hookean, 3 and 4: elastic-plastic, atom 5: no point; also on two ranks. */
 class ByHand : public ::testing::Test {
  protected:
   Scene run;
@@ -162,8 +161,7 @@ class ByHand : public ::testing::Test {
   /** Column n (0 for a vector) of a compute, by tag - 1, on all processes. */
   std::vector<double> column(const std::string &id, int n = 0)
   {
-    auto *compute = run.lmp->modify->get_compute_by_id(id);
-    compute->compute_peratom();
+    auto *compute = run.per_atom(id);
     auto *atom = run.lmp->atom;
     std::vector<double> mine(atom->natoms, 0.0);
     for (int i = 0; i < atom->nlocal; i++)
@@ -276,15 +274,11 @@ TEST_F(ByHand, EnergyAndWaveSpeed)
 /** Wildcards, and what uses per-atom values: reduce, fix ave/atom, fix ave/grid, variables. */
 TEST_F(ByHand, WorksWithOtherCommands)
 {
-  run.commands("compute q all mpm/atom stress/* F/* volume\n"
-               "compute v points mpm/atom volume\n"
-               "compute sum points reduce sum c_q[16] c_v\n"
-               "variable twice atom 2*c_v\n"
-               "compute most points reduce max v_twice\n"
-               "fix mean points ave/atom 1 1 1 c_v c_q[1]\n"
+  run.commands("compute q all mpm/atom stress/* F/* volume\ncompute v points mpm/atom volume\n"
+               "compute sum points reduce sum c_q[16] c_v\nvariable twice atom 2*c_v\n"
+               "compute most points reduce max v_twice\nfix mean points ave/atom 1 1 1 c_v c_q[1]\n"
                "fix cells points ave/grid 1 1 1 2 2 2 c_q[1] c_v norm all\n"
-               "thermo_style custom step c_sum[*] c_most\n"
-               "run 0\n");
+               "thermo_style custom step c_sum[*] c_most\nrun 0\n");
   EXPECT_EQ(run.lmp->modify->get_compute_by_id("q")->size_peratom_cols, 16);
   run.commands("run 2\n");
   const double expected = 4 * 0.125;
@@ -315,10 +309,8 @@ TEST(Output, NeedsMaterialPoints)
 // ---------------------------------------------------------------- dump mpm/vtk
 TEST_F(ByHand, PointFile)
 {
-  run.commands("compute c all property/atom vx vy\n"
-               "compute one all mpm/atom vonmises\n"
-               "variable v atom 10*id\n"
-               "run 0\n");
+  run.commands("compute c all property/atom vx vy\ncompute one all mpm/atom vonmises\n"
+               "variable v atom 10*id\nrun 0\n");
   set_state();
   run.commands("write_dump points mpm/vtk " + name("hand.vtp") +
                " stress F velocity vonmises eplastic volume c_c[*] c_one v_v image stress/xy "
@@ -376,15 +368,9 @@ TEST_F(ByHand, PointFileOptions)
   run.commands("region low block INF INF INF 3 INF INF\nregion empty block 0 0.1 0 0.1 0 0.1\n"
                "dump a one mpm/vtk 1 " +
                name("a.*.vtp") +
-               " vonmises\n"
-               "dump_modify a precision single sort id\n"
-               "dump b all mpm/vtk 1 " +
-               name("b.*.vtp") +
-               "\ndump_modify b region low sort id\n"
-               "dump c all mpm/vtk 1 " +
-               name("c.*.vtp") +
-               " J\ndump_modify c region empty\n"
-               "run 0\n");
+               " vonmises\ndump_modify a precision single sort id\ndump b all mpm/vtk 1 " +
+               name("b.*.vtp") + "\ndump_modify b region low sort id\ndump c all mpm/vtk 1 " +
+               name("c.*.vtp") + " J\ndump_modify c region empty\nrun 0\n");
   if (rank() == 0) {
     VTKReader a(name("a.0.vtp")), b(name("b.0.vtp")), c(name("c.0.vtp"));
     EXPECT_EQ(a["id"], (std::vector<double>{1, 2}));
@@ -446,9 +432,8 @@ TEST(Output, CollectionNames)
 // ---------------------------------------------------------------- a moving body
 static const std::string scene = space("lj", "p f f", "0 8 0 8 0 8") +
     body("block 2.5 5.5 2 5 1.5 4.5", "density 1.0 neohookean 50.0 0.3") +
-    "fix floor all mpm/boundary zlo slip\n"
-    "fix pull all gravity 1.0 vector 0 0 -1\nvelocity all set 0.7 0.1 -1.5\n"
-    "timestep 0.01\n";
+    "fix floor all mpm/boundary zlo slip\nfix pull all gravity 1.0 vector 0 0 -1\n"
+    "velocity all set 0.7 0.1 -1.5\ntimestep 0.01\n";
 
 /** Times in the list of files are physical, also when the time step changes between runs. */
 TEST(Output, CollectionOfFiles)
@@ -571,8 +556,7 @@ SERIAL_TEST(Output, MaterialsAreThoseOfNow)
 
   // a history variable that is gone
   Scene run(scene + "compute h all mpm/atom eplastic\nunfix m\n" + other + "run 1\n");
-  auto *h = run.lmp->modify->get_compute_by_id("h");
-  h->compute_peratom();
+  auto *h = run.per_atom("h");
   run.commands("unfix m\nfix m all mpm/material density 1.0 neohookean 50.0 0.3\n");
   EXPECT_THROW(h->compute_peratom(), std::exception);
 }
@@ -688,7 +672,6 @@ TEST(Output, CellErrors)
   expect_error(run, "fix cells all mpm/cells grid density\n", "density");
 }
 
-// ---------------------------------------------------------------- compute mpm/energy
 struct Entry {
   /** Right-hand side of the balance. */
   static double gained(const double *v)
@@ -702,8 +685,7 @@ struct Entry {
 TEST(Energy, BalanceCloses)
 {
   Scene run(scene +
-            "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 10\n"
-            "run 0\n");
+            "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\nthermo 10\nrun 0\n");
   auto *e = run.lmp->modify->get_compute_by_id("e");
   const double start = e->compute_scalar();
   EXPECT_NEAR(start, 0.5 * 27.0 * (0.49 + 0.01 + 2.25), 1e-12);

@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_PORE_BODIES_TESTING_H
 #define MPM_PORE_BODIES_TESTING_H
 
-// Bodies with pore water that collide, for tests of fix mpm/pore on several ranks and after restarts.
+// Bodies with pore water that collide, for tests of fix mpm/pore on ranks and after restarts.
 
 #include "mpm_lammps.h"
 
@@ -12,8 +12,8 @@
 
 namespace MPM_TEST {
 
-/** Input of a disk and a block of soils and a dry block, which collide across ranks and periodic faces.
- *  water: arguments of fix mpm/pore; variables: input lines that define the variables in them. */
+/** Input of a disk and a block of soils and a dry block, which collide across ranks and periodic
+ *  faces. water: arguments of fix mpm/pore; variables: lines that define variables in them. */
 inline std::string colliding(const std::string &variables, const std::string &water)
 {
   return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
@@ -40,12 +40,8 @@ struct PointWater {
 /** Water of all points on all ranks, in order of tags. The scene must have the computes of PORE. */
 inline std::vector<PointWater> water_of_points(Scene &run)
 {
-  const auto values = [&](const char *id) {
-    auto *compute = run.lmp->modify->get_compute_by_id(id);
-    compute->compute_peratom();
-    return compute->vector_atom;
-  };
-  const double *const p = values("pore"), *const S = values("saturation");
+  const double *const p = run.per_atom("pore")->vector_atom,
+                      *const S = run.per_atom("saturation")->vector_atom;
   std::vector<PointWater> mine;
   for (int i = 0; i < run.n(); i++) mine.push_back({(double) run.lmp->atom->tag[i], p[i], S[i]});
   return all_by_tag(mine, run.lmp->world);
@@ -53,23 +49,22 @@ inline std::vector<PointWater> water_of_points(Scene &run)
 constexpr const char *PORE = "compute pore all mpm/atom pore\n"
                              "compute saturation all mpm/atom saturation\n";
 
-/** Largest difference between the pressures and between the saturations of the same points of two scenes.
- *  It is 1e300 if there are no points, or not the same number of them. */
+/** Largest difference between the pressures and between the saturations of the same points of two
+ *  scenes. It is 1e300 if there are no points, or not the same number of them. */
 inline double water_difference(Scene &a, Scene &b)
 {
   const auto one = water_of_points(a), other = water_of_points(b);
   if (one.empty() || one.size() != other.size()) return 1.0e300;
   double most[2] = {0.0, 0.0};
   for (std::size_t k = 0; k < one.size(); k++) {
-    most[0] = std::max(most[0], std::fabs(one[k].p - other[k].p));
-    most[1] = std::max(most[1], std::fabs(one[k].S - other[k].S));
+    grow(most[0], one[k].p - other[k].p);
+    grow(most[1], one[k].S - other[k].S);
   }
   return std::max(measured("difference of pressures", most[0]),
                   measured("of saturations", most[1]));
 }
 
-/** Expects the same results on one rank and on all: states of points, volume of the water that came in,
- *  and pressures and saturations within this difference. */
+/** Expects states, water that came in, pressures, and saturations of one rank, within this. */
 inline void expect_same_on_ranks(const std::string &scene, double difference)
 {
   OnRanks run(scene + PORE, "run 300\n");
@@ -79,8 +74,7 @@ inline void expect_same_on_ranks(const std::string &scene, double difference)
               run.parallel.fix("water")->compute_scalar(), 1e-12);
 }
 
-/** Expects that a scene of colliding() gives the same bits with a restart in the middle as without it.
- *  variables: as for colliding(). */
+/** Expects the same bits of colliding() with a restart in the middle. variables: as there. */
 inline void expect_continues(const std::string &scene, const std::string &variables)
 {
   const std::string tail = scene.substr(scene.find("fix m one"));
@@ -95,6 +89,15 @@ inline void expect_continues(const std::string &scene, const std::string &variab
   ASSERT_EQ(one.size(), two.size());
   EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(PointWater)), 0);
   EXPECT_EQ(run.whole.fix("water")->compute_scalar(), run.again.fix("water")->compute_scalar());
+}
+
+/** Greatest velocity of points over what the weight alone would give them in the time t. */
+inline double fall(Scene &run, double t)
+{
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    for (int d = 0; d < 3; d++) grow(most, run.v()[i][d]);
+  return over_ranks(most) / (9.81 * run.lmp->force->ftm2v * t);
 }
 
 }    // namespace MPM_TEST

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_PORE_MODE_TESTING_H
 #define MPM_PORE_MODE_TESTING_H
@@ -19,9 +19,9 @@ struct Mode {
   std::string transfer;    ///< options of fix mpm
 };
 
-/** Velocity of the soil at the given times, in units of its initial value. The velocity v of the soil, the
- *  flow w, the stress s, and the pressure p of the mode are integrated by RK4, with v = 1 and the others 0
- *  at the start. moves: false for the u-p formulation, in which w follows the pressure without inertia. */
+/** Velocity of the soil at the given times, in units of its initial value. The velocity v of the
+ *  soil, the flow w, the stress s, and the pressure p of the mode are integrated by RK4, with v = 1
+ *  and the others 0 at the start. moves: false for u-p, without inertia of w. */
 inline std::vector<double> exact(const Mode &mode, const std::vector<double> &times,
                                  bool moves = true)
 {
@@ -59,8 +59,8 @@ inline std::vector<double> exact(const Mode &mode, const std::vector<double> &ti
   return result;
 }
 
-/** Runs the mode for about this many periods. Appends the times of the steps to t, and to y the amplitude
- *  of the velocity of the points in units of the initial one. formulation: options of fix mpm/pore. */
+/** Runs the mode for about this many periods. Appends times of steps to t, and to y the amplitude
+ *  of the velocity of points in units of the initial one. formulation: options of fix mpm/pore. */
 inline void vibrate(const Mode &mode, const std::string &formulation, double periods,
                     std::vector<double> &t, std::vector<double> &y)
 {

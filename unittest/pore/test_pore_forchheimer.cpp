@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -11,8 +11,6 @@
 #include "pore/pore_testing.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 constexpr double A =
     1e7;    // Darcy: pressure gradient per flow, k = 1e-3 with a unit weight of 1e4
@@ -35,8 +33,6 @@ std::string stiff(const std::string &options, double bottom, double top, double 
       "timestep 4e-4\n";
 }
 
-}    // namespace
-
 // steady flow solves the quadratic equation, up and down, with and without inertia
 SERIAL_TEST(Steady, IsTheRoot)
 {
@@ -56,7 +52,7 @@ SERIAL_TEST(Steady, IsTheRoot)
       }
 }
 
-// a soil that can dry and touches no face changes nothing; at the sides of a body a part of the area is missing
+// a soil that can dry and touches no face changes nothing; the sides of a body lack some area
 SERIAL_TEST(Steady, BesideSoilThatDries)
 {
   for (const double b : {1e8, 1e10}) {
@@ -145,12 +141,8 @@ SERIAL_TEST(Units, Metal)
   }
 }
 
-namespace {
-
 const char *const FREE = "initial v_p free pressure 0 forchheimer number 50 ",
                   *const MOVES = "formulation u-v-p ";
-
-}    // namespace
 
 TEST(Ranks, Agree)
 {

@@ -1,18 +1,15 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
 // timeout: 300
 
-// Soil with pore water that is heated: grains and water expand (fix mpm/pore ... expansion). And material without water, through
-// which none may leak.
+// Soil with pore water that is heated and expands; material without water, into which none leaks.
 
 #include "pore/pore_testing.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 constexpr double GRAINS = 3e-5, WATER = 2e-4, STIFF = 2.2e8 / 0.4;
 
@@ -20,10 +17,9 @@ constexpr double GRAINS = 3e-5, WATER = 2e-4, STIFF = 2.2e8 / 0.4;
 std::string heated(const std::string &axes, const std::string &box, const std::string &options)
 {
   return space("si", axes, box, 1, 0.03) + "region soil block 0 0.4 0 0.4 0 0.4\n" +
-      "fix grid all mpm 0.1\ncreate_points 1 region soil spacing 0.05\n"
-      "fix m all mpm/material density 2000 linear 1e7 0.3 thermal conducting 1000 293 2.0 "
-      "expansion "
-      "1e-5\nfix water all mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-9 " +
+      "fix grid all mpm 0.1\ncreate_points 1 region soil spacing 0.05\nfix m all mpm/material "
+      "density 2000 linear 1e7 0.3 thermal conducting 1000 293 2.0 expansion 1e-5\nfix water all "
+      "mpm/pore 2.2e8 1000 9810 soil m 0.4 constant 1e-9 " +
       options +
       "\nvariable q equal 2000*1000*10/0.02*(time<0.02)\nfix heat all mpm/heat source v_q\n";
 }
@@ -40,16 +36,13 @@ double pressure(const std::string &scene)
   });
   run_to(run, 0.03);
   EXPECT_NEAR(water.mass() / before, 1.0, 1e-13);
-  auto *const T = run.lmp->modify->get_compute_by_id("T");
-  T->compute_peratom();
+  auto *const T = run.per_atom("T");
   double warmth = 0.0;
   for (int i = 0; i < run.n(); i++) warmth += (T->vector_atom[i] - 293.0) / run.n();
   return sum / n / warmth;
 }
 
-}    // namespace
-
-// no room to expand: water and grains press on each other; a body that is free to expand: what water takes more than pores do
+// no room to expand: water and grains press on each other; free to expand: water leaves the pores
 SERIAL_TEST(Undrained, PressureByHeat)
 {
   for (const char *formulation : {"", " formulation u-v-p"}) {
@@ -85,29 +78,27 @@ TEST(Heated, RanksAndRestart)
   expect_continues(scene, variables);
 }
 
-// a wall without water between two soils, or one that does not conduct: nodes of one that is thin belong to both
+// a dry or tight wall between two soils: nodes of a thin one belong to both
 TEST(Wall, LeaksAreTold)
 {
   for (const bool heat : {false, true})
     for (const double cells : {1.0, 2.0, 3.0}) {
       const double a = 0.05 * cells;
       EXPECT_EQ(
-          lines_that_say(
+          times_said(
               plane("si", "f p", "-1 1 0 0.4", 2, 0.03) +
                   strprintf("region left block INF %g INF INF INF INF\n", -a) +
                   strprintf("region right block %g INF INF INF INF INF\n", a) +
                   strprintf("region wall block %g %g INF INF INF INF\n", -a, a) +
                   "create_points 1 region left spacing 0.05\n"
                   "create_points 1 region right spacing 0.05\n"
-                  "create_points 2 region wall spacing 0.05\n"
-                  "group soil type 1\ngroup dry type 2\nfix grid all mpm 0.1\n"
-                  "fix m soil mpm/material density 2000 linear 1e7 0.3" +
+                  "create_points 2 region wall spacing 0.05\ngroup soil type 1\ngroup dry type 2\n"
+                  "fix grid all mpm 0.1\nfix m soil mpm/material density 2000 linear 1e7 0.3" +
                   (heat ? " thermal conducting 1000 293 2\nfix heat all mpm/heat\n"
                         : "\nfix water all mpm/pore 2.2e7 1000 1 soil m 0.4 constant 1e-7\n") +
                   "fix b dry mpm/material density 2000 linear 1e7 0.3\ntimestep 1e-6\nrun 1\n",
-              heat ? "so thin that heat leaks through it" : "so thin that water leaks through it")
-              .size(),
-          cells < 3.0 ? 1u : 0u);
+              heat ? "so thin that heat leaks through it" : "so thin that water leaks through it"),
+          cells < 3.0 ? 1 : 0);
     }
 }
 

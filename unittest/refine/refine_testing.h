@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_REFINE_TESTING_H
 #define MPM_REFINE_TESTING_H
@@ -19,8 +19,8 @@ inline double origin(const std::string &shape, int level)
   return at;
 }
 
-/** Input of fields F0, F1, ... of points of types 1, 2, ..., each with half the spacing of the one before.
- *  regions: of each field, as in the region command. Points fill it outside of the region of the next. */
+/** Input of fields F0, F1, ... of points of types 1, 2, ..., each with half the spacing of the
+ *  last. regions: of each field, as in region. Points fill it outside of the region of the next. */
 inline std::string lattices(int dim, const std::string &shape, const std::string &options,
                             const std::vector<std::string> &regions)
 {

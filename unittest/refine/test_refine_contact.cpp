@@ -1,16 +1,14 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
-// Fix mpm/contact of bodies that have lattices of several spacings (fix mpm/refine): one fix mpm/contact for each lattice.
+// Bodies that have lattices of several spacings (fix mpm/refine): a fix mpm/contact for each.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 struct Part {    // what a body has on the lattice of a level: spacing 1, 1/2, ...
   char body;
@@ -18,7 +16,7 @@ struct Part {    // what a body has on the lattice of a level: spacing 1, 1/2, .
   std::string region;    // empty: no points
 };
 
-/** Fields A0, A1, B0, ... and groups of the same names, united in bodies; points after all fixes. */
+/** Fields A0, A1, B0, ... and groups of these names, united in bodies; points after all fixes. */
 std::string fields(int dim, const std::vector<Part> &parts, const std::string &options)
 {
   std::string head, points;
@@ -121,10 +119,9 @@ Motion motion(Scene &run, const std::vector<Part> &parts, bool all)
 
 const char *const HEAD_ON = "variable v atom 0.5*(x<6)-0.3*(x>6)\nvelocity all set v_v 0 0\n";
 
-}    // namespace
-
-// Two blocks collide, with the jump of the spacing in one or both of them: momentum is kept to round-off, and the other body gets what
-// it does on one lattice, between what it gets on the coarse and on the fine one (which lose energy where they meet, by their spacing)
+// Two blocks collide, with the jump of the spacing in one or both of them: momentum is kept to
+// round-off, and the other body gets what it does on one lattice, between what it gets on the
+// coarse and on the fine one (which lose energy where they meet, by their spacing)
 SERIAL_TEST(Collision, IsThatOnOneLattice)
 {
   for (const std::string options : {"", "scheme musl"}) {
@@ -143,15 +140,14 @@ SERIAL_TEST(Collision, IsThatOnOneLattice)
       const auto after = motion(run, parts, true), one = motion(run, parts, false);
       const std::string name = kind + " " + options;
       EXPECT_NEAR(measured(name + ": momentum", after.p / before.p), 1.0, 1e-12);
-      // a point of the finer lattice between tied nodes has an affine part of these: not to round-off
+      // a fine point between tied nodes has an affine part of these: not to round-off
       EXPECT_NEAR(measured("  angular momentum", after.angular / before.angular), 1.0, 0.01)
           << name;
-      measured("  momentum of B", one.p);
       measured("  kinetic energy", after.energy / before.energy);
       found[kind] = {one.p, 0.0, after.energy / before.energy};
       EXPECT_LT(std::fabs(run.compute_vector()[10] / before.energy), 1e-10) << name;
       if (kind == "coarse" || kind == "fine") continue;
-      EXPECT_GT(one.p, 0.995 * found["coarse"].p) << name;
+      EXPECT_GT(measured("  momentum of B", one.p), 0.995 * found["coarse"].p) << name;
       EXPECT_LT(one.p, 1.005 * found["fine"].p) << name;
       EXPECT_GT(found[kind].energy, 0.98 * found["coarse"].energy) << name;
       EXPECT_LT(found[kind].energy, 1.005 * found["fine"].energy) << name;
@@ -159,7 +155,7 @@ SERIAL_TEST(Collision, IsThatOnOneLattice)
   }
 }
 
-// They touch when their surfaces do, to a hundredth of a cell, though both have other functions from when they come near
+// They touch when their surfaces do, to a hundredth of a cell, though functions change before
 SERIAL_TEST(Collision, BeginsWhereTheyTouch)
 {
   for (const std::string kind : {"jump of both", "jumps apart", "jump at the interface"}) {
@@ -200,14 +196,11 @@ SERIAL_TEST(Collision, In3d)
     run.commands("run 60\n");
     const auto after = motion(run, parts, true), one = motion(run, parts, false);
     EXPECT_NEAR(measured("momentum", after.p / before.p), 1.0, 1e-12);
-    measured("momentum of B", one.p);
-    EXPECT_GT(one.p, 0.0);    // was negative
+    EXPECT_GT(measured("momentum of B", one.p), 0.0);    // was negative
     if (reversed) EXPECT_NEAR(one.p / last, 1.0, 1e-10);
     last = one.p;
   }
 }
-
-namespace {
 
 /** A below B, along x, with periodic sides: at rest under their weight. */
 std::string pile(const std::vector<Part> &parts, const std::string &options,
@@ -215,15 +208,12 @@ std::string pile(const std::vector<Part> &parts, const std::string &options,
 {
   return plane("lj", "f p", "0 16 0 8", (int) parts.size(), 0.3) + fields(2, parts, options) +
       contacts(parts, law) +
-      "fix m all mpm/material density 1 linear 1000 0.3\n"
-      "fix floor all mpm/boundary xlo slip\nfix g all gravity 1 vector -1 0 0\nfix dt all mpm/dt "
-      "0.4\n";
+      "fix m all mpm/material density 1 linear 1000 0.3\nfix floor all mpm/boundary xlo slip\n"
+      "fix g all gravity 1 vector -1 0 0\nfix dt all mpm/dt 0.4\n";
 }
 
-}    // namespace
-
-// A block rests on another one: they press on each other with its weight, and the stress is that of the weight above, as on one lattice.
-// With affine terms in place of gradients, forces at the rim of a lattice are not those of the functions
+// A block rests on another one: they press on each other with its weight, and the stress is that of
+// the weight above. With affine terms, forces at the rim are not those of the functions
 SERIAL_TEST(Rest, OnEachOther)
 {
   LONG_CASE();
@@ -242,8 +232,7 @@ SERIAL_TEST(Rest, OnEachOther)
       EXPECT_NEAR(measured(name + ": force over weight", force(run, 0) / 48.0), 1.0, 1e-3);
       double square = 0.0, all = 0.0;
       for (int i = 0; i < run.n(); i++) {
-        double sigma[6];
-        run.points().cauchy(i, sigma);
+        const auto sigma = run.cauchy(i);
         const double weight = 12.0 - run.reference(i)[0], m = run.mass()[i];
         square += m * pow(sigma[0] + weight, 2);
         all += m * weight * weight;
@@ -255,24 +244,23 @@ SERIAL_TEST(Rest, OnEachOther)
   }
 }
 
-// All lattices of a body have one form of the stress by default, also where one of them alone touches the other body
+// All lattices of a body have one form of stress by default, also where one alone is in touch
 SERIAL_TEST(Rest, OneFormOfTheStress)
 {
   const auto lines = [](const std::string &scene) {
-    return lines_that_say(scene, ": stress gradient, the default").size();
+    return times_said(scene, ": stress gradient, the default");
   };
   const auto parts = blocks("a body of the coarse lattice");
   const std::string scene = pile(parts, ""), rest = "fix rest all mpm/relax 1e-5\nrun 1\n";
-  EXPECT_EQ(lines(scene + rest), 0u);
-  EXPECT_EQ(lines(scene + "unfix c0\n" + rest), 3u);
+  EXPECT_EQ(lines(scene + rest), 0);
+  EXPECT_EQ(lines(scene + "unfix c0\n" + rest), 3);
   // a line tells what has ended it
-  EXPECT_EQ(lines_that_say(scene + "unfix c0\n" + rest + "fix c0 all mpm/contact A0 B0\nrun 1\n",
-                           "stress mls again, the default with fix mpm/contact")
-                .size(),
-            3u);
+  EXPECT_EQ(times_said(scene + "unfix c0\n" + rest + "fix c0 all mpm/contact A0 B0\nrun 1\n",
+                       "stress mls again, the default with fix mpm/contact"),
+            3);
 }
 
-// It slides on the other one with friction: the force is the coefficient of friction times its weight
+// It slides on the other one: the force is the coefficient of friction times its weight
 SERIAL_TEST(Slide, HasTheFrictionOfTheWeight)
 {
   LONG_CASE();
@@ -297,8 +285,8 @@ SERIAL_TEST(Slide, HasTheFrictionOfTheWeight)
   }
 }
 
-// Three bodies, the thin middle one in contact with both others by fixes of its own: nodes of one that reach cells of the last one are
-// tied, too, as they are in the middle one
+// Three bodies, the thin middle one in contact with both others by fixes of its own: nodes of one
+// that reach cells of the last one are tied, too, as they are in the middle one
 SERIAL_TEST(Chain, OfThreeBodies)
 {
   const std::vector<Part> parts = {{'A', 0, "0 4 0 4"}, {'A', 1, "0 4 4 8"}, {'B', 0, ""},
@@ -382,17 +370,16 @@ SERIAL_TEST(BadInput, IsRefused)
   expect_error(plane("lj", "f f", "-4 20 -4 12", (int) empty.size(), 0.3) + fields(2, empty, "") +
                    "fix m all mpm/material density 1 neohookean 100 0.3\nrun 0\n",
                "no material points");
-  // a body that is on the fine lattice alone does not feel the coarse part; one on the coarse lattice alone feels all
+  // a body on the fine lattice alone does not feel the coarse part; one on the coarse feels all
   const auto words = [&](const std::vector<Part> &some) {
     const std::string fixes = some[2].level == 1 ? c1 : c0;
     return lines_that_say(
         plane("lj", "f f", "-4 20 -4 12", (int) some.size(), 0.3) + fields(2, some, "") + fixes +
-            "\nfix m all mpm/material density 1 neohookean 100 0.3\ntimestep 0.01\n"
-            "run 2\n",
+            "\nfix m all mpm/material density 1 neohookean 100 0.3\ntimestep 0.01\nrun 2\n",
         "WARNING");
   };
   const auto lines = words({{'A', 0, "0 6 0 4"}, {'A', 1, "0 6 4 8"}, {'B', 1, "6 12 5 8"}});
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("does not see it where it meets points of A0"));
-  EXPECT_EQ(words(blocks("a body of the coarse lattice")).size(), 0u);
+  EXPECT_EQ(words(blocks("a body of the coarse lattice")).size(), 0);
 }

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input ranks
 // mpi: 1 4
@@ -10,8 +10,6 @@
 #include "refine/refine_testing.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 const char *const solid =
     "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n";
@@ -25,11 +23,9 @@ struct Lattices {
   }
 };
 
-}    // namespace
-
-// Between faces with two temperatures, the temperature of a body at rest is linear in space, and heat that flows is that of the whole
-// section: to round-off with linear functions. With others, products of functions along two axes have another integral by coarse points
-// than by fine ones, next to edges of the finer part
+// Between faces with two temperatures, the temperature of a body at rest is linear in space, and
+// heat that flows is that of the whole section: to round-off with linear functions. With others,
+// integrals by coarse points differ next to edges of the finer part
 PARAMETER_TEST(Profile, IsLinear, Lattices,
                Values(Lattices{2, 2, "linear", ""}, Lattices{2, 3, "linear", "frame total"},
                       Lattices{3, 2, "linear", ""}, Lattices{2, 2, "quadratic", ""},
@@ -61,7 +57,7 @@ PARAMETER_TEST(Profile, IsLinear, Lattices,
               linear ? 1e-12 : 3e-3);
 }
 
-// A bar without heat through its ends, with a finer middle or a finer end: order 2, and not worse than on the coarse lattice alone
+// A bar without heat through its ends, with a finer part: order 2, no worse than on the coarse one
 SERIAL_TEST(Bar, CosineDecays)
 {
   for (const std::string shape : {"linear", "quadratic", "cubic"})
@@ -101,8 +97,7 @@ SERIAL_TEST(Bar, CosineDecays)
     }
 }
 
-// A body that turns and flies through periodic faces with a hot spot at its rim: heat to round-off, without new extremes beyond those
-// of points on one lattice
+// A body flies through faces with a hot spot at its rim: heat to round-off, no new extremes
 SERIAL_TEST(Heat, IsKeptInABodyThatSpins)
 {
   for (const std::string transfer : {"relax 1.0", "affine", "pic"}) {
@@ -171,8 +166,7 @@ SERIAL_TEST(Heat, SpreadsAcrossTheRim)
   EXPECT_LT(around, 1.5 * fine);
 }
 
-// Heat comes in through a face that has coarse and fine cells, is the area times the flux; what follows the temperature outside does so
-// everywhere
+// Heat through a face with coarse and fine cells: area times flux, or after the temperature outside
 SERIAL_TEST(Faces, HaveAllOfTheirArea)
 {
   for (const int dim : {2, 3})
@@ -192,7 +186,7 @@ SERIAL_TEST(Faces, HaveAllOfTheirArea)
       }
 }
 
-// A slab that convection warms on one side is held cold on the other: the profile and the flow at the end are those of the two in series
+// A slab between convection and cold: the profile and the flow are those of the two in series
 SERIAL_TEST(Faces, ConvectionInSeries)
 {
   for (const std::string shape : {"linear", "quadratic"}) {
@@ -249,8 +243,7 @@ PARAMETER_TEST(Friction, WarmsAllLattices, const char *, Values("", "every auto"
             "velocity all set 1 0 0\nfix g all gravity 1 vector 0 -1 0\n"
             "fix w all mpm/boundary ylo separate friction 0.3 heat yes\nfix heat all mpm/heat " +
             GetParam() +
-            "\n"
-            "compute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.02\nrun 100\n");
+            "\ncompute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.02\nrun 100\n");
   EXPECT_NEAR(measured("heat of points over what came",
                        Warm(run).heat() / run.fix("heat")->compute_scalar()),
               1.0, 1e-12);
@@ -281,8 +274,8 @@ TEST(Refine, HeatRanksAndRestart)
       EXPECT_EQ(one.size(), other.size());
       double most = 0.0, size = 0.0;
       for (std::size_t k = 0; k < one.size(); k++) {
-        most = std::max(most, std::fabs(one[k].T - other[k].T));
-        size = std::max(size, std::fabs(one[k].T));
+        grow(most, one[k].T - other[k].T);
+        grow(size, one[k].T);
       }
       return most / size;
     };
@@ -300,11 +293,10 @@ TEST(Refine, HeatRanksAndRestart)
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string head = plane("lj", "f f", "0 8 0 8", 2, 0.2) +
-      "region l block 0 4 0 8 INF INF\nregion r block 4 8 0 8 INF INF\n"
-      "group a type 1\ngroup b type 2\nfix a a mpm 1.0\nfix b b mpm 0.5 origin 0.25 0.25\n"
-      "fix one all mpm/refine a b\n"
-      "create_points 1 region l ppc 2 fix a\ncreate_points 2 region r ppc 2 fix b\n"
-      "group a type 1\ngroup b type 2\n";
+      "region l block 0 4 0 8 INF INF\nregion r block 4 8 0 8 INF INF\ngroup a type 1\n"
+      "group b type 2\nfix a a mpm 1.0\nfix b b mpm 0.5 origin 0.25 0.25\n"
+      "fix one all mpm/refine a b\ncreate_points 1 region l ppc 2 fix a\n"
+      "create_points 2 region r ppc 2 fix b\ngroup a type 1\ngroup b type 2\n";
   expect_refused(
       head + solid,
       {{"fix h all mpm/heat time euler\nrun 0\n", "use time explicit"},
@@ -317,23 +309,20 @@ SERIAL_TEST(BadInput, IsRefused)
   // the skin of the body is one coarse cell deep
   const std::string skin = plane("lj", "f f", "0 8 0 8", 2, 0.2) +
       lattices(2, "quadratic", "", {"block 0 8 0 8 INF INF", "block 0 8 0 1 INF INF"}) + solid;
-  EXPECT_EQ(lines_that_say(skin + "fix h all mpm/heat ylo flux 1\nrun 2\n", "end within").size(),
-            1u);
-  EXPECT_EQ(lines_that_say(skin + "fix h all mpm/heat yhi flux 1\nrun 2\n", "end within").size(),
-            0u);
+  EXPECT_EQ(times_said(skin + "fix h all mpm/heat ylo flux 1\nrun 2\n", "end within"), 1);
+  EXPECT_EQ(times_said(skin + "fix h all mpm/heat yhi flux 1\nrun 2\n", "end within"), 0);
   // an interface of materials at the rim, and one a coarse cell away from it
   const auto layers = [](const char *fine) {
-    return lines_that_say(
-               plane("lj", "f p", "0 12 0 4", 2, 0.2) +
-                   lattices(2, "quadratic", "", {"block 0 12 0 4 INF INF", fine}) +
-                   "region A block 0 6 INF INF INF INF\nregion B block 6 12 INF INF INF INF\n"
-                   "group A region A\ngroup B region B\n"
-                   "fix m A mpm/material density 1 eos linear 1e-6 thermal conducting 1 2 1\n"
-                   "fix n B mpm/material density 1 eos linear 1e-6 thermal conducting 1 2 10\n"
-                   "fix h all mpm/heat\nrun 0\n",
-               "let one lattice go on")
-        .size();
+    return times_said(
+        plane("lj", "f p", "0 12 0 4", 2, 0.2) +
+            lattices(2, "quadratic", "", {"block 0 12 0 4 INF INF", fine}) +
+            "region A block 0 6 INF INF INF INF\nregion B block 6 12 INF INF INF INF\n"
+            "group A region A\ngroup B region B\n"
+            "fix m A mpm/material density 1 eos linear 1e-6 thermal conducting 1 2 1\n"
+            "fix n B mpm/material density 1 eos linear 1e-6 thermal conducting 1 2 10\n"
+            "fix h all mpm/heat\nrun 0\n",
+        "let one lattice go on");
   };
-  EXPECT_EQ(layers("block 6 12 0 4 INF INF"), 1u);
-  EXPECT_EQ(layers("block 5 12 0 4 INF INF"), 0u);
+  EXPECT_EQ(layers("block 6 12 0 4 INF INF"), 1);
+  EXPECT_EQ(layers("block 5 12 0 4 INF INF"), 0);
 }

@@ -1,12 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
 // timeout: 600
 
-// Bodies in contact, walls, and grains in one run: the same on any number of ranks, after a restart,
-// and in any order of the fixes; what is out of reach changes nothing.
+// Bodies in contact, walls, and grains in one run: the same on any number of ranks, after a
+// restart, and in any order of the fixes; what is out of reach changes nothing.
 
 #include "mpm_lammps.h"
 
@@ -36,8 +36,7 @@ timestep 0.01
 )";
 
 static const std::string pair =
-    "pair_style granular\n"
-    "pair_coeff * * hooke 50.0 0.5 tangential linear_history 20.0 0.5 0.4\n"
+    "pair_style granular\npair_coeff * * hooke 50.0 0.5 tangential linear_history 20.0 0.5 0.4\n"
     "neigh_modify exclude group body body\n";
 
 static const std::vector<std::string> fixes = {
@@ -94,8 +93,7 @@ TEST(Coupling, OrderOfFixesDoesNotMatter)
   }
 }
 
-// grains that bounce on each other out of reach: bodies move as if there were none, to the last bit,
-// and so do the grains without the bodies
+// grains that bounce out of reach: bodies and grains move as without the others, to the last bit
 SERIAL_TEST(Coupling, OutOfReachIsNoCoupling)
 {
   const std::string away = "displace_atoms grain move 0 0 5\nvelocity grain set 0 0 0\n"
@@ -128,11 +126,8 @@ SERIAL_TEST(Coupling, OutOfReachIsNoCoupling)
   EXPECT_TRUE(met);
 }
 
-/* ----------------------------------------------------------------------
-   A block on a plane, on a spring: Coulomb friction takes 2 mu m g/k from the amplitude in each
-   half cycle, whatever the amplitude, and leaves the block within mu m g/k of the rest position.
-------------------------------------------------------------------------- */
-
+// A block on a plane, on a spring: Coulomb friction takes 2 mu m g/k from the amplitude in each
+// half cycle, whatever the amplitude, and leaves the block within mu m g/k of the rest position.
 SERIAL_TEST(Friction, OscillationDecaysLinearly)
 {
   const double mass = 500.0, gravity = 9.81, mu = 0.1, omega = 2.0 * M_PI / 0.4;

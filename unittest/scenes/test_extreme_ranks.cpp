@@ -1,19 +1,17 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics extreme ranks
 // mpi: 2 4
 // timeout: 300
 
-// Stability at the extremes, on several ranks: the same as on one, at speed, with points exactly on
-// corners, and with nodes of next to no mass.
+// Stability at the extremes, on ranks: at speed, points on corners, nodes of next to no mass.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
 
-/** A body flies at half of its wave speed along the diagonal of a periodic box, over faces, edges and the
- *  corner where ranks meet, three times around. */
+/** A body flies along the diagonal of a periodic box at half its wave speed, three times around. */
 PARAMETER_TEST(AtSpeed, AcrossPeriodicFacesAndCorners, const char *,
                Values("transfer apic", "transfer flip 1.0 scheme musl",
                       "shape cpgimp transfer apic scheme usavg",

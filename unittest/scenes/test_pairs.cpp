@@ -1,13 +1,13 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart ranks
 // mpi: 2
 // timeout: 300
 
-// Choices of all kinds together: options of fix mpm, walls, bodies, laws, and commands between two runs.
-// Each pair of them is refused with what to do instead, or is in a scene with some others that has the
-// same result on one rank and on two, and after a restart file in the middle of the run.
+// Choices of all kinds: options of fix mpm, walls, bodies, laws, and commands between two runs.
+// Each pair of them is refused with what to do instead, or is in a scene with some others that has
+// the same result on one rank and on two, and after a restart file in the middle of the run.
 
 #include "mesh/stl_testing.h"
 
@@ -19,10 +19,8 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
-/** Where lines of a choice go: before the box; options of fix mpm; the law; fixes, which are defined
- *  again after a restart file; commands between two runs. */
+/** Where lines of a choice go: before the box; options of fix mpm; the law; fixes, which are
+ *  defined again after a restart file; commands between two runs. */
 enum Place { HEAD, OPTION, LAW, FIX, BETWEEN };
 
 struct Choice {
@@ -70,9 +68,8 @@ const Choice choices[] = {
     {"grain", "grain", FIX, ""},
     {"map", "map", HEAD, "atom_modify map hash\ncomm_modify cutoff 1.5\n"},
     {"rigid", "rigid", FIX,
-     "region tool mpm/mesh STL 1.0 2.0 3.7 2.0\n"
-     "fix tool all mpm/rigid tool density 2.0 separate friction 0.2 velocity 0 -0.4 0.1 omega 0.1 "
-     "0.2 0.1\n"},
+     "region tool mpm/mesh STL 1.0 2.0 3.7 2.0\nfix tool all mpm/rigid tool density 2.0 separate "
+     "friction 0.2 velocity 0 -0.4 0.1 omega 0.1 0.2 0.1\n"},
     {"driven", "wall", FIX,
      "variable push equal 0.3*sin(0.2*step)\n"
      "fix w2 all mpm/boundary ylo slip velocity 0 v_push 0\n"},
@@ -86,8 +83,7 @@ const Choice choices[] = {
     {"balance", "comm", FIX, "comm_style tiled\nfix lb all balance 5 1.0 rcb\n"},
     {"delay", "neigh", FIX, "neigh_modify every 5 delay 5 check no\n"},
     {"deposit", "deposit", FIX,
-     "region sky block 6 7.5 4 7.5 0.1 0.4\n"
-     "fix rain all deposit 3 3 4 4711 region sky near 0.1\n"},
+     "region sky block 6 7.5 4 7.5 0.1 0.4\nfix rain all deposit 3 3 4 4711 region sky near 0.1\n"},
     {"create", "between", BETWEEN,
      "region more block 0 2 4 6 INF INF\n"
      "create_points 2 region more ppc 2\ngroup two type 2\ngroup bodies type 1 2\n"},
@@ -174,8 +170,7 @@ std::string lines(const Chosen &chosen, Place place)
   return text;
 }
 
-/** The scene with some choices: what comes before the first run, after a restart file, and between two
- *  runs. */
+/** A scene with choices: what comes before the first run, after a restart, and between two runs. */
 struct Combination {
   std::string scene, again, between;
 
@@ -301,8 +296,7 @@ std::string box_mesh(int dim)
       "$EndNodes\n$Elements\n" + std::to_string(nelement) + "\n" + elements + "$EndElements\n";
 }
 
-/** Write scene number k as an input for bench/same_bits.py: the whole run, and again from a restart file in the
- *  middle. */
+/** Write scene k as an input for bench/same_bits.py: the whole run, and again from its middle. */
 void write_scene(const std::string &folder, int dim, int k, const Chosen &chosen)
 {
   const std::string mesh = strprintf("box%d.msh", dim), stl = "box.stl";
@@ -317,8 +311,6 @@ void write_scene(const std::string &folder, int dim, int k, const Chosen &chosen
         "# " + names(chosen) + "\n" + c.scene + "run 8\nwrite_restart middle\n" + rest +
             "clear\nread_restart middle\n" + c.again + rest);
 }
-
-}    // namespace
 
 /** Does the map from IDs find all atoms, and nothing twice? (Chains of copies must end.) */
 void check_map(Scene &run)

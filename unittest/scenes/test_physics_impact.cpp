@@ -1,26 +1,22 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 600
 
-// Pulses and impacts against closed forms: a pulse that breaks a plate at its rear, a bar that a wall throws back, a grain that
-// loses energy to the waves in a half-space, a chain of spheres.
+// Pulses and impacts against closed forms: a pulse that breaks a plate at its rear, a bar that a
+// wall throws back, a grain that loses energy to the waves in a half-space, a chain of spheres.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-/* ----------------------------------------------------------------------
-   Spall. A pulse of pressure with the peak P and a straight tail of length L returns from the free rear surface of a
-   plate as tension. In an acoustic material (pressure linear in the strain) the tension at a depth x is at most 2 x P/L,
-   so that the plate breaks at x = S L/(2 P) when it bears S, and the surface, which had the velocity 2 P/(rho c), is
-   slowed down by 2 S/(rho c) before it feels the crack: the pull-back. (The tip of the returning pulse goes on, and breaks
-   what is deeper, too: a limit without a time breaks a zone.)
-------------------------------------------------------------------------- */
-
+// Spall. A pulse of pressure with the peak P and a straight tail of length L returns from the free
+// rear surface of a plate as tension. In an acoustic material (pressure linear in the strain) the
+// tension at a depth x is at most 2 x P/L, so that the plate breaks at x = S L/(2 P) when it bears
+// S, and the surface, which had the velocity 2 P/(rho c), is slowed down by 2 S/(rho c) before it
+// feels the crack: the pull-back. (The tip of the returning pulse goes on, and breaks what is
+// deeper, too: a limit without a time breaks a zone.)
 struct Spalled {
   double pull_back;    // 2 P/(rho c) less the least velocity of the surface, over 2 S/(rho c)
   double depth;        // of the points that break first, over S L/(2 P)
@@ -52,7 +48,7 @@ Spalled spall(const std::string &options, double h)
         v += run.v()[i][0];
         n++;
       }
-    // the peak arrives at 0.5, the signal of the crack at 1.1; after that the layer that has come off swings
+    // the peak arrives at 0.5, the signal of the crack at 1.1; then the layer swings
     if (run.time() > 0.7) least = std::min(least, v / n);
     if (depth > 0.0) return;
     double broken = 0.0, sum = 0.0;
@@ -78,25 +74,23 @@ TEST(Spall, PullBackOfATriangularPulse)
       const std::string name = strprintf("%s, %d cells in the tail: ", options, 50 << k);
       EXPECT_NEAR(measured(name + "depth of the first crack/exact", found[k].depth), 1.0,
                   1.5 * h / 0.3);
-      measured(name + "pull-back/exact", found[k].pull_back);
-      // the wave from the crack is a step of the height S, of which a precursor of some cells erodes the tip of the signal: with
-      // the slope 2 P/L on one side of the tip an early arrival by w takes 2 P w/L, and a front in a chain of cells spreads with
-      // h^(2/3) of its way^(1/3), here 0.3, and is as wide as four times that at the most
-      EXPECT_LT(found[k].pull_back, 1.0);
+      // the wave from the crack is a step of the height S, of which a precursor of some cells
+      // erodes the tip of the signal: with the slope 2 P/L on one side of the tip an early arrival
+      // by w takes 2 P w/L, and a front in a chain of cells spreads with h^(2/3) of its way^(1/3),
+      // here 0.3, and is as wide as four times that at the most
+      EXPECT_LT(measured(name + "pull-back/exact", found[k].pull_back), 1.0);
       EXPECT_GT(found[k].pull_back, 1.0 - 4.0 * std::cbrt(0.3 * h * h / 8.0) / 0.6);
     }
     EXPECT_LT(1.0 - found[2].pull_back, 0.75 * (1.0 - found[0].pull_back));
   }
 }
 
-/* ----------------------------------------------------------------------
-   A bar hits a rigid wall and leaves it with its speed. What stands for it, masses with springs, does not: the mass at the wall
-   loses its energy at once, and the front of the wave spreads, so that vibrations are left. Of N cells, N = 6, 12, 24, 48, a
-   chain keeps .893, .938, .963, .977 of the speed. Quadratic functions reach the wall from farther away: at the most twice that is
-   missing. (A square keeps 0.76, as it vibrates in two dimensions: 0.715, 0.748, 0.760 with flip 1.0 and 0.727, 0.749, 0.760
-   with apic, with 8, 16, 32 cells in its edge.)
-------------------------------------------------------------------------- */
-
+// A bar hits a rigid wall and leaves it with its speed. What stands for it, masses with springs,
+// does not: the mass at the wall loses its energy at once, and the front of the wave spreads, so
+// that vibrations are left. Of N cells, N = 6, 12, 24, 48, a chain keeps .893, .938, .963, .977 of
+// the speed. Quadratic functions reach the wall from farther away: at the most twice that is
+// missing. (A square keeps 0.76, as it vibrates in two dimensions: 0.715, 0.748, 0.760 with flip
+// 1.0 and 0.727, 0.749, 0.760 with apic, with 8, 16, 32 cells in its edge.)
 /** Springs and masses 1, halves at the ends, against a wall that does not pull. */
 double rebound_of_a_chain(int N)
 {
@@ -144,13 +138,11 @@ PARAMETER_TEST(ReboundOfABar, FromAWallThatSeparates, const char *,
   EXPECT_LT(missing[1], 0.7 * missing[0]);
 }
 
-/* ----------------------------------------------------------------------
-   K1(c): a grain hits a half-space. A force F(t) at a point that is slow against the time of waves through the contact
-   leaves the energy B * integral of (dF/dt)^2 in waves, with B = I/(2 pi rho cs^3) and I the imaginary part of the integral
-   of xi alpha/R(xi) for a harmonic point force (G.F. Miller, H. Pursey, Proc. R. Soc. A 223 (1954) 521; of it 67.4 % is the Rayleigh
-   wave for a Poisson number of 1/4, in R at its zero). S.C. Hunter, J. Mech. Phys. Solids 5 (1957) 162.
-------------------------------------------------------------------------- */
-
+// K1(c): a grain hits a half-space. A force F(t) at a point that is slow against the time of waves
+// through the contact leaves the energy B * integral of (dF/dt)^2 in waves, with B = I/(2 pi rho
+// cs^3) and I the imaginary part of the integral of xi alpha/R(xi) for a harmonic point force (G.F.
+// Miller, H. Pursey, Proc. R. Soc. A 223 (1954) 521; of it 67.4 % is the Rayleigh wave for a
+// Poisson number of 1/4, in R at its zero). S.C. Hunter, J. Mech. Phys. Solids 5 (1957) 162.
 double radiation(double nu)
 {
   const double g2 = (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)), g = std::sqrt(g2);
@@ -170,13 +162,9 @@ double radiation(double nu)
   const auto rayleigh = [=](double x) {
     return std::pow(2.0 * x * x - 1.0, 2) - 4.0 * x * x * std::sqrt((x * x - g2) * (x * x - 1.0));
   };
-  double low = 1.0 + 1.0e-9, high = 2.0;
-  for (int k = 0; k < 100; k++) {
-    const double middle = 0.5 * (low + high);
-    (rayleigh(middle) * rayleigh(low) > 0.0 ? low : high) = middle;
-  }
-  const double slope = (rayleigh(low + 1.0e-6) - rayleigh(low - 1.0e-6)) / 2.0e-6;
-  return sum + PI * low * std::sqrt(low * low - g2) / std::abs(slope);
+  const double x = root_of(1.0 + 1.0e-9, 2.0, rayleigh),
+               slope = (rayleigh(x + 1.0e-6) - rayleigh(x - 1.0e-6)) / 2.0e-6;
+  return sum + PI * x * std::sqrt(x * x - g2) / std::abs(slope);
 }
 
 TEST(HalfSpace, GrainLosesEnergyToWaves)
@@ -184,8 +172,8 @@ TEST(HalfSpace, GrainLosesEnergyToWaves)
   LONG_CASE();
   EXPECT_NEAR(radiation(0.25), 0.930753, 1.0e-5);
 
-  // a quarter of the half-space and of the grain, whose force goes to one point next to the edge; waves do not return from
-  // the other ends before the grain has left
+  // a quarter of the half-space and of the grain, whose force goes to one point next to the edge;
+  // waves do not return from the other ends before the grain has left
   const double nu = 0.25, E = 2.5, m = 4.0, k = 4.0, v = 0.01;    // of shear waves: speed 1
   const int N = 16;
   for (const char *options : {"transfer aflip 1.0", "transfer flip 1.0 frame total shape linear"}) {
@@ -233,23 +221,21 @@ TEST(HalfSpace, GrainLosesEnergyToWaves)
   }
 }
 
-/* ----------------------------------------------------------------------
-   F3: a chain of equal spheres that touch, the first of which comes with a velocity: one solitary wave, as of Hertzian
-   springs, F = E sqrt(2 R)/(3 (1 - nu^2)) delta^1.5 (V.F. Nesterenko, J. Appl. Mech. Tech. Phys. 24 (1983) 733), which are
-   integrated here. Spheres with even and odd numbers are one field each. Asked: arrival to 5 %, peak force to 10 %, for 20
-   spheres with 10 cells in a diameter. There the contact has a radius of one cell: arrival 0.91, force 1.03, velocity of the
-   last of four spheres 0.71 (20 cells: 1.06, 0.75, 0.86); these are four spheres with 40 cells, four in the radius of the
-   contact, which is what Hertz's force takes (test_hertz). With 56 cells and a velocity of 0.02: 0.948, 1.038, 0.973, as
-   spheres that overlap by 8 % of their radius are stiffer than Hertz's.
-------------------------------------------------------------------------- */
-
+// F3: a chain of equal spheres that touch, the first of which comes with a velocity: one solitary
+// wave, as of Hertzian springs, F = E sqrt(2 R)/(3 (1 - nu^2)) delta^1.5 (V.F. Nesterenko, J. Appl.
+// Mech. Tech. Phys. 24 (1983) 733), which are integrated here. Spheres with even and odd numbers
+// are one field each. Asked: arrival to 5 %, peak force to 10 %, for 20 spheres with 10 cells in a
+// diameter. There the contact has a radius of one cell: arrival 0.91, force 1.03, velocity of the
+// last of four spheres 0.71 (20 cells: 1.06, 0.75, 0.86); these are four spheres with 40 cells,
+// four in the radius of the contact, which is what Hertz's force takes (test_hertz). With 56 cells
+// and a velocity of 0.02: 0.948, 1.038, 0.973, as overlaps of 8 % are stiffer.
 struct ChainMotion {
   double arrival, force, last;    // at a sphere; of the peak; velocity of the last sphere
 };
 
 constexpr double CHAIN_E = 1.0, CHAIN_NU = 0.3;
 
-/** Largest mean of the force over one unit of time, which is a fifth of a contact, and when it was. */
+/** Largest mean of the force over a unit of time, a fifth of a contact, and when it was. */
 ChainMotion peak(const std::vector<double> &momentum, double dt, double last)
 {
   ChainMotion result{0.0, 0.0, last};
@@ -338,5 +324,3 @@ TEST(Chain, SolitaryWave)
   EXPECT_NEAR(measured("F3 peak force/exact", found.force / exact.force), 1.0, 0.1);
   EXPECT_NEAR(measured("F3 velocity of the last sphere/exact", found.last / exact.last), 1.0, 0.1);
 }
-
-}    // namespace

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -10,11 +10,8 @@
 
 using namespace MPM_TEST;
 
-/* ----------------------------------------------------------------------
-   E3: Taylor bar, OFHC copper, 190 m/s, 25.4 mm x 7.6 mm. Experiment (Johnson, Holmquist, J. Appl.
-   Phys. 64 (1988) 3901): length 16.2, diameter 13.5, diameter at 0.2 of the initial length 10.1 mm.
-------------------------------------------------------------------------- */
-
+// E3: Taylor bar, OFHC copper, 190 m/s, 25.4 mm x 7.6 mm. Experiment (Johnson, Holmquist, J. Appl.
+// Phys. 64 (1988) 3901): length 16.2, diameter 13.5, diameter at 0.2 of the initial length 10.1 mm.
 TEST(TaylorBar, OfhcCopper)
 {
   LONG_CASE();
@@ -51,14 +48,12 @@ TEST(TaylorBar, OfhcCopper)
   EXPECT_NEAR(width, 10.16, 0.03 * 10.16);
 }
 
-/* ----------------------------------------------------------------------
-   H1: dam break (J.C. Martin, W.J. Moyce, Phil. Trans. A 244 (1952) 312), a = 57.15 mm, height 2 a;
-   front Z = x/a over T = t sqrt(2 g/a) (table 2), height H over tau = t sqrt(g/a) (table 6).
-   Numerical fronts are earlier than the gate of the experiment: a shift up to 0.2 is allowed. (With 10, 20, 40 cells in a,
-   apic: slope 1.455, 1.401, 1.416; the front at T = 1, 2, 3 is at 1.43, 2.63, 4.10, at 1.51, 2.67, 4.08, and at 1.55, 2.66,
-   4.09: it is late at the start, while it is within one cell of the floor, and right from T = 2 on.)
-------------------------------------------------------------------------- */
-
+// H1: dam break (J.C. Martin, W.J. Moyce, Phil. Trans. A 244 (1952) 312), a = 57.15 mm, height 2 a;
+// front Z = x/a over T = t sqrt(2 g/a) (table 2), height H over tau = t sqrt(g/a) (table 6).
+// Numerical fronts are earlier than the gate of the experiment: a shift up to 0.2 is allowed. (With
+// 10, 20, 40 cells in a, apic: slope 1.455, 1.401, 1.416; the front at T = 1, 2, 3 is at 1.43,
+// 2.63, 4.10, at 1.51, 2.67, 4.08, and at 1.55, 2.66, 4.09: it is late at the start, while it is
+// within one cell of the floor, and right from T = 2 on.)
 PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
                Values("apic", "aflip 1.0", "flip 0.99 scheme musl"))
 {
@@ -74,13 +69,12 @@ PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
   Scene run(
       plane("si", "f f", strprintf("0 %.17g 0 %.17g", 6.0 * a, 3.0 * a), 1, 0.5 * h) +
       strprintf(
-          "fix grid all mpm %.17g transfer %s\n"
-          "region column block 0 %.17g 0 %.17g INF INF\n"
+          "fix grid all mpm %.17g transfer %s\nregion column block 0 %.17g 0 %.17g INF INF\n"
           "create_points 1 region column ppc 2\n"
           "fix water all mpm/material density 1000 eos tait 225000 7 viscosity newtonian 0.001\n"
-          "fix walls all mpm/boundary xlo xhi ylo slip\n"
-          "fix g all gravity %.17g vector 0 -1 0\nfix step all mpm/dt 0.4\n"
-          "variable t equal time\nfix end all halt 10 v_t > 0.19 error continue\n",
+          "fix walls all mpm/boundary xlo xhi ylo slip\nfix g all gravity %.17g vector 0 -1 0\n"
+          "fix step all mpm/dt 0.4\nvariable t equal time\n"
+          "fix end all halt 10 v_t > 0.19 error continue\n",
           h, GetParam(), a, 2.0 * a, g));
   const auto start = run.sums();
   std::vector<double> time, Z, H;
@@ -94,7 +88,7 @@ PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
           volume += run.points().jacobian(i) * run.lmp->atom->vfrac[i];
         }
         if (time.empty()) volume0 = volume;
-        volume_error = std::max(volume_error, std::abs(volume / volume0 - 1.0));
+        grow(volume_error, volume / volume0 - 1.0);
         time.push_back(run.time());
         Z.push_back((x + 0.25 * h) / a);
         H.push_back((y + 0.25 * h) / (2.0 * a));
@@ -132,8 +126,7 @@ PARAMETER_TEST(DamBreak, MartinMoyce, const char *,
   EXPECT_DOUBLE_EQ(run.sums().mass, start.mass);
 }
 
-/* ------------------- pitfall 9: the wave speed of a Tait liquid, and a time step that is stable */
-
+// pitfall 9: the wave speed of a Tait liquid, and a time step that is stable
 TEST(Tait, WaveSpeed)
 {
   // K = 100, gamma = 7, density 1: c = 10 at rest, c^2 = K (density ratio)^(gamma - 1)
@@ -201,15 +194,13 @@ TEST(Tait, TimeStepIsStable)
       for (int i = 0; i < run.n(); i++) smallest = std::min(smallest, run.points().jacobian(i));
     });
     run.commands("run 100\n");
-    measured(std::string("Tait impact, smallest J, ") + options, smallest);
     // 1.004 and, as FLIP damps nothing at this large a step, 1.042
     EXPECT_LT(measured(std::string("Tait impact, largest E/E0, ") + options, worst), 1.06);
-    EXPECT_LT(smallest, 0.85);
+    EXPECT_LT(measured(std::string("Tait impact, smallest J, ") + options, smallest), 0.85);
   }
 }
 
-/* ----- K1(a): a grain (pair style granular) hits a free block of material points off its centre */
-
+// K1(a): a grain (pair style granular) hits a free block of material points off its centre
 static std::string grain_on_block(const std::string &options, const std::string &tangential)
 {
   return strprintf("units si\nboundary f f f\natom_style hybrid sphere mpm\ncomm_modify vel yes\n"
@@ -220,10 +211,9 @@ static std::string grain_on_block(const std::string &options, const std::string 
                    "fix soft block mpm/material density 1000 neohookean 1.0e5 0.3\n"
                    "create_atoms 2 single 0.0061 -0.0033 0.00855\ngroup grains type 2\n"
                    "set type 1 diameter 0.0025\nset type 2 diameter 0.014 density 2500\n"
-                   "velocity grains set 0.05 0.03 -0.5\n"
-                   "pair_style granular\npair_coeff * * hertz 1.0e5 0.0 %s\n"
-                   "neigh_modify exclude type 1 1\nfix move grains nve/sphere\n"
-                   "timestep 2.5e-5\n",
+                   "velocity grains set 0.05 0.03 -0.5\npair_style granular\n"
+                   "pair_coeff * * hertz 1.0e5 0.0 %s\nneigh_modify exclude type 1 1\n"
+                   "fix move grains nve/sphere\ntimestep 2.5e-5\n",
                    options.c_str(), tangential.c_str());
 }
 
@@ -253,15 +243,14 @@ PARAMETER_TEST(GrainOnBlock, Momentum, const char *,
     EXPECT_LT(run.sums(1).p[2], -0.5 * scale);
     const std::string name = strprintf("K1(a) %s%s: ", GetParam(), friction ? ", friction" : "");
     EXPECT_LT(measured(name + "momentum", p), 1.0e-12);
-    // also with tangential forces, whose torque a point takes into its affine field (without: 0.0015);
-    // FLIP does not conserve angular momentum, and in the total frame only affine motion does so
+    // also with tangential forces, whose torque a point takes into its affine field (without:
+    // 0.0015); FLIP does not keep it, and in the total frame only affine motion does
     measured(name + "angular momentum", L);
     if (name.find("apic") != std::string::npos) {
       EXPECT_LT(L, name.find("total") == std::string::npos ? 1.0e-12 : 4.0e-4);
     }
-    // out of contact there is no energy but that of motion and in the block. FLIP with MUSL keeps it
-    // to first order in the time step; friction takes 7 %. APIC damps the vibrations of this block of
-    // 8 cells.
+    // out of contact there is no energy but that of motion and in the block. FLIP with MUSL keeps
+    // it to first order in the time step; friction takes 7 %. APIC damps vibrations of 8 cells.
     double spin = 0.0;
     for (int i = 0; i < run.n(); i++)
       if (run.lmp->atom->type[i] == 2)
@@ -274,13 +263,10 @@ PARAMETER_TEST(GrainOnBlock, Momentum, const char *,
   }
 }
 
-/* ----------------------------------------------------------------------
-   K1(b): a grain hits the end of a column between slipping sides: v' = -F/m - F'/Z with
-   F = k delta^(3/2), Z = density c A. k^.4 m^.6 v^.2/Z = .102252: e = .840153, t = .904748 ms.
-   The column is one cell wide, one point to a layer, so that the grain pushes on the whole face;
-   mass and stiffness are those of the case with 20 x 20 mm, times the ratio of the faces.
-------------------------------------------------------------------------- */
-
+// K1(b): a grain hits the end of a column between slipping sides: v' = -F/m - F'/Z with
+// F = k delta^(3/2), Z = density c A. k^.4 m^.6 v^.2/Z = .102252: e = .840153, t = .904748 ms.
+// The column is one cell wide, one point to a layer, so that the grain pushes on the whole face;
+// mass and stiffness are those of the case with 20 x 20 mm, times the ratio of the faces.
 PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
 {
   LONG_AFTER(1);
@@ -310,16 +296,13 @@ PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
   const double density = m / (4.0 / 3.0 * 3.14159265358979323846 * R * R * R);
   Scene run(strprintf(
       "units si\nboundary f f f\natom_style hybrid sphere mpm\ncomm_modify vel yes\n"
-      "neighbor 0.002 bin\nregion box block 0 0.005 0 0.005 -0.16 0.02\n"
-      "create_box 2 box\nfix grid all mpm 0.005 every %d\n"
-      "region column block 0 0.005 0 0.005 -0.15 0\n"
+      "neighbor 0.002 bin\nregion box block 0 0.005 0 0.005 -0.16 0.02\ncreate_box 2 box\n"
+      "fix grid all mpm 0.005 every %d\nregion column block 0 0.005 0 0.005 -0.15 0\n"
       "create_points 1 region column ppc 1 1 2\ngroup column type 1\n"
       "fix m column mpm/material density 1000 linear 1.0e7 0.3\n"
-      "fix sides all mpm/boundary xlo xhi ylo yhi slip\n"
-      "create_atoms 2 single 0.0025 0.0025 %.17g\ngroup grains type 2\n"
-      "set type 1 diameter 0.0025\nset type 2 diameter %.17g density %.17g\n"
-      "velocity grains set 0 0 -1\n"
-      "pair_style granular\n"
+      "fix sides all mpm/boundary xlo xhi ylo yhi slip\ncreate_atoms 2 single 0.0025 0.0025 %.17g\n"
+      "group grains type 2\nset type 1 diameter 0.0025\nset type 2 diameter %.17g density %.17g\n"
+      "velocity grains set 0 0 -1\npair_style granular\n"
       "pair_coeff * * hertz %.17g 0.0 tangential linear_nohistory 0.0 0.0\n"
       "neigh_modify exclude type 1 1\nfix move grains nve/sphere\ncompute e all mpm/energy\n"
       "timestep 1.0e-6\nthermo_style custom step c_e[6]\n",
@@ -349,12 +332,10 @@ PARAMETER_TEST(GrainOnColumn, Restitution, int, Values(1, 2, 5, 10, 20))
   EXPECT_NEAR(measured("K1(b) largest force/exact", largest / force), 1.0, 0.03);
 }
 
-/* ----------------------------------------------------------------------
-   K1(d): a grain rests on a block under gravity for 1e5 steps. Asked: the force is its weight to 1 %, the
-   center of mass does not drift, nothing heats up. It has settled, with viscous friction, before. Flip 1.0 is not
-   here: with musl it gains energy without bound in so many steps (Howto_mpm_stability), and throws the grain.
-------------------------------------------------------------------------- */
-
+// K1(d): a grain rests on a block under gravity for 1e5 steps. Asked: the force is its weight to 1
+// %, the center of mass does not drift, nothing heats up. It has settled, with viscous friction,
+// before. Flip 1.0 is not here: with musl it gains energy without bound in so many steps
+// (Howto_mpm_stability), and throws the grain.
 TEST(GrainAtRest, HundredThousandSteps)
 {
   LONG_CASE();
@@ -382,13 +363,13 @@ TEST(GrainAtRest, HundredThousandSteps)
             if (run.lmp->atom->type[i] != 2) continue;
             const double f = run.lmp->atom->f[i][2] / (9.81 * start.mass) + 1.0;
             force += f;
-            worst = std::max(worst, std::abs(f - 1.0));
+            grow(worst, f - 1.0);
             n++;
           }
           const auto grain = run.sums(2);
           for (int d = 0; d < 3; d++) {
-            drift = std::max(drift, std::abs(grain.x[d] - start.x[d]));
-            drift = std::max(drift, std::abs(run.sums(1).x[d] - block.x[d]));
+            grow(drift, grain.x[d] - start.x[d]);
+            grow(drift, run.sums(1).x[d] - block.x[d]);
           }
           fastest = std::max(fastest, grain.kinetic + run.sums(1).kinetic);
         },

@@ -16,8 +16,7 @@
 
 namespace MPM_NS {
 
-/** Cells of [0,1]^dim: which of them are wet, and the coefficients of the faces between them. Faces
- *  of the box are closed. */
+/** Cells of [0,1]^dim: which are wet, and coefficients of faces between them. The box is closed. */
 struct CellScene {
   int dim, n;    ///< cells along an axis
   std::function<bool(const double *)> wet = [](const double *) {
@@ -177,8 +176,7 @@ class CellSystem : public LinearSystem {
   }
 };
 
-/** The shapes of part O7 of the reference values: a tank with a sloping surface, a disk, and a tank
- *  with 40 small disks (drops). */
+/** Shapes of benchmark O7: a tank with a sloping surface, a disk, a tank with 40 disks (drops). */
 inline bool sloping(const double *x)
 {
   return x[1] < 0.5 + 0.2 * (x[0] - 0.5);

@@ -40,8 +40,7 @@ class System : public LinearSystem {
   Operator A, M;
 };
 
-/** Operator of a rod: a chain of n unknowns joined by unit springs, with both ends fixed (held) or
- *  free. */
+/** Operator of a rod: n unknowns joined by unit springs, with both ends fixed (held) or free. */
 inline System::Operator rod(int n, bool held)
 {
   return [=](const double *x, double *y) {

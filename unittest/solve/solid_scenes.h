@@ -4,8 +4,7 @@
 #ifndef MPM_TEST_SOLID_SCENES_H
 #define MPM_TEST_SOLID_SCENES_H
 
-// Linear elasticity of points with B-splines on a lattice, as systems of equations for the
-// displacements of the nodes.
+// Linear elasticity of points with B-splines on a lattice: systems for displacements of nodes.
 
 #include "solve/krylov.h"
 #include "solve/spline_multigrid.h"
@@ -18,8 +17,7 @@
 
 namespace MPM_NS {
 
-/** Points on a regular lattice, 2 per node spacing along each axis, with their stiffnesses, and the
- *  constraints of the nodes. */
+/** Points, 2 per node spacing along each axis, their stiffnesses, and the constraints of nodes. */
 struct SolidScene {
   int dim;
   double h;                  ///< spacing of nodes
@@ -55,8 +53,7 @@ class SolidSystem : public LinearSystem {
   Preconditioner preconditioner = MULTIGRID;
   int64_t napply = 0;
 
-  /** mine(x): whether a point is on this rank. ranks_of: makes the ranks once the blocks are
-   *  known. */
+  /** mine(x): is a point on this rank? ranks_of: makes the ranks once the blocks are known. */
   explicit SolidSystem(
       const SolidScene &scene,
       const std::function<bool(const double *)> &mine =
@@ -212,8 +209,7 @@ class SolidSystem : public LinearSystem {
                 point.mu * ((a == b && l == k) + (a == k && l == b)) +
                 (a == l && b == k ? point.lambda : 0.0);
   }
-  /** Weights w and their derivatives g (per spacing) along an axis. Returns the index of the first
-   *  node that a point reaches. */
+  /** Weights w and derivatives g (per spacing) along an axis. Returns the first node of a point. */
   int along(double x, double *w, double *g) const
   {
     const double s = x / scene.h;

@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// Poisson's equation on cells, and its multigrid preconditioner: against the equations as they are
-// written, exact pressures, and iterations of other solvers.
+// Poisson's equation on cells and its multigrid: equations as written, exact pressures, iterations.
 
 #include "cell_scenes.h"
 
@@ -13,8 +12,6 @@
 #include <limits>
 
 using namespace MPM_NS;
-
-namespace {
 
 double largest_difference(const CellSystem &system, const std::vector<double> &a,
                           const std::vector<double> &b)
@@ -40,8 +37,6 @@ CellScene odd_scene(int dim)
   scene.shift[2] = -3;
   return scene;
 }
-
-}    // namespace
 
 // A x is what the equations say, written down by index; faces that images have, too, count once.
 TEST(CellOperator, IsTheEquations)
@@ -72,8 +67,7 @@ TEST(CellOperator, IsTheEquations)
   }
 }
 
-// Conjugate gradients need a preconditioner that is symmetric and positive definite, also where the
-// period is odd.
+// Conjugate gradients need a symmetric and positive definite preconditioner, also for odd periods.
 TEST(CellMultigrid, IsSymmetric)
 {
   for (const int dim : {2, 3})
@@ -121,8 +115,7 @@ TEST(CellMultigrid, Iterations)
   }
 }
 
-// Without a preconditioner but the diagonal they are those of plain conjugate gradients: 116 and
-// 231 for the tank.
+// With the diagonal alone they are those of plain conjugate gradients: 116 and 231 for the tank.
 TEST(CellOperator, IterationsWithTheDiagonal)
 {
   CellScene scene{2, 32};
@@ -165,8 +158,7 @@ TEST(CellMultigrid, IterationsOfHardCases)
   EXPECT_LE(most, 27);
   EXPECT_LE(most, 1.45 * least);
 
-  // walls between cells, every second one with a gap at the other end: large cells must not join
-  // both sides
+  // walls between cells, with gaps at ends in turns: large cells must not join both sides
   CellScene labyrinth{2, 64};
   labyrinth.open = [](const int *i, int d) {
     return d == 1 && i[1] % 3 == 0 && (i[1] % 2 ? i[0] > 0 : i[0] < 63) ? 0.0 : 1.0;
@@ -176,8 +168,7 @@ TEST(CellMultigrid, IterationsOfHardCases)
   EXPECT_LE(winding.iterations(), 60);
 }
 
-// A tank under gravity that is closed but for its surface: the pressure is the depth, exactly, also
-// with shares of faces.
+// A tank under gravity, open at the top: pressure is the depth, exactly, also with shares of faces.
 TEST(CellMultigrid, WaterAtRest)
 {
   for (const int dim : {2, 3}) {
@@ -212,9 +203,8 @@ TEST(CellMultigrid, WaterAtRest)
   }
 }
 
-// One pool without a surface between two thin walls, next to one with a surface: they share larger
-// cells, and no water. 30 iterations to 1e-12 are 1.5 times what the 14 by cosine transforms to
-// 1e-8, as above, come to; 13 are measured.
+// A pool without a surface between thin walls, next to one with a surface: they share larger cells,
+// and no water. 30 iterations to 1e-12 are 1.5 times the 14 by cosine transforms to 1e-8.
 TEST(CellMultigrid, Pools)
 {
   CellScene two{2, 30};
@@ -315,9 +305,8 @@ TEST(CellMultigrid, BubbleWithPressure)
   }
 }
 
-// A column of water that is released: pressures of part O6 of the reference values, by a series,
-// with surfaces at the places where cells end. Half a spacing from there the distance to the
-// surface is half as long.
+// A column of water that is released: pressures of benchmark O6, by a series, with surfaces where
+// cells end. Half a spacing from there the distance to them is half as long.
 TEST(CellMultigrid, ReleasedColumn)
 {
   double error[2];
@@ -334,8 +323,7 @@ TEST(CellMultigrid, ReleasedColumn)
     }
     A.finish();
     closed.multigrid.setup(A);
-    // acceleration -1 in each face along y that is no wall: div a = grad p balance at the bottom
-    // row
+    // acceleration -1 in each face along y but walls: div a = grad p balance at the bottom row
     auto b = closed.values([&](const int *i) {
       return i[1] == 0 ? 1.0 / n : 0.0;
     });
@@ -349,8 +337,7 @@ TEST(CellMultigrid, ReleasedColumn)
   EXPECT_GT(std::log2(error[0] / error[1]), 0.9);
 }
 
-// What is known outside counts infinitely: there are no factors of that, and it is said. The
-// correction by the next level is left out then.
+// What is known outside counts infinitely, without factors: the next level is left out then.
 TEST(CellMultigrid, IsUsableOrSaysSo)
 {
   CellSystem system(CellScene{2, 32});

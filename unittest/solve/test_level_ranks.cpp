@@ -21,10 +21,7 @@
 
 using namespace MPM_NS;
 
-namespace {
-
-/** Blocks of one triangle that rank me of n gives, some of them to rows that are not its own, and
- *  some of a place where it has given one. */
+/** Blocks that rank me of n gives, some to rows of others, some of a place that it has given. */
 std::vector<MatrixBlock> blocks_of(int me, int n, int rows, int width)
 {
   std::vector<MatrixBlock> list;
@@ -56,10 +53,7 @@ Eigen::MatrixXd dense(const std::vector<std::vector<MatrixBlock>> &lists, int ro
   return A;
 }
 
-}    // namespace
-
-// Products, blocks, the next level, and the whole matrix on ranks of which one has no rows are
-// those of the dense matrix.
+// Products, blocks, the next level, and the matrix on ranks, one without rows: the dense matrix.
 TEST(BlockRows, AreThoseOfTheMatrix)
 {
   constexpr int ROWS = 13, NEXT = 5;

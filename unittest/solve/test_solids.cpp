@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// Multigrid for the stiffness of points with B-splines: symmetry, exact solutions, and iterations,
-// which must not depend on the number of points.
+// Multigrid for the stiffness of B-splines: symmetry, exact solutions, iterations for any size.
 
 #include "solid_scenes.h"
 #include "thread_ranks.h"
@@ -28,8 +27,6 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 void clamp(double (*P)[3])
 {
   for (int a = 0; a < 3; a++) P[a][a] = 0.0;
@@ -50,8 +47,7 @@ double weight(const double *, int a)
   return a == 1 ? -1.0 : 0.0;
 }
 
-/** Products with the matrix that conjugate gradients need for two decades, from those for eight;
- *  solutions are true. */
+/** Products that conjugate gradients need for two decades, from those for eight; true solutions. */
 double products(SolidSystem &system)
 {
   system.setup();
@@ -93,10 +89,7 @@ SolidScene slope(int n)
   return scene;
 }
 
-}    // namespace
-
-// Symmetric and positive definite, with constraints that are not along axes, masses, an odd period,
-// and in 3d.
+// Symmetric and positive definite, with constraints off the axes, masses, an odd period, in 3d.
 TEST(SplineMultigrid, IsSymmetric)
 {
   auto ring = block(2, 13);
@@ -130,8 +123,7 @@ TEST(SplineMultigrid, IsSymmetric)
   }
 }
 
-// A bar that is pulled by its own weight along itself, without lateral strain: u' = g (1 - x)/M,
-// exactly at the second order of the functions.
+// A bar pulled by its own weight, without lateral strain: u' = g (1 - x)/M, exact.
 TEST(SplineMultigrid, BarUnderItsWeight)
 {
   auto scene = block(2, 24);
@@ -182,8 +174,7 @@ TEST(SplineMultigrid, ProductsDoNotGrow)
   }
 }
 
-// The same with five levels, and in 3d with three: coarse levels have the smoother of the finest
-// one.
+// The same with five levels, in 3d with three: coarse levels have the smoother of the finest one.
 TEST(SplineMultigrid, ManyLevels)
 {
   auto many = block(2, 64);
@@ -243,8 +234,7 @@ TEST(SplineMultigrid, ProductsOfHardCases)
 }
 
 // Levels of multigrid change the way and not the answer. Blocks of nodes as preconditioner need
-// many times the products. A few nodes of the slope have motions that no point sees: energies are
-// compared.
+// many times the products. Energies are compared, as no point sees some motions of nodes.
 TEST(SplineMultigrid, SameSolutionAsBlocks)
 {
   SolidSystem system(slope(16));
@@ -260,8 +250,7 @@ TEST(SplineMultigrid, SameSolutionAsBlocks)
   EXPECT_GT(report.iterations, 3 * needed);
 }
 
-// Nothing holds a body: forces that balance move it by no more than its deformation, and are solved
-// for.
+// Nothing holds a body: forces that balance only deform it, and are solved for.
 TEST(SplineMultigrid, FreeBody)
 {
   auto scene = block(2, 16);
@@ -277,9 +266,8 @@ TEST(SplineMultigrid, FreeBody)
   EXPECT_TRUE(report.converged()) << report.describe();
 }
 
-// Systems of few unknowns are factorized as a whole: a solution takes one iteration and what the
-// shift of the diagonal costs, with constraints along slopes, masses, periodic axes, cells that are
-// cut anywhere, and ratios of stiffness.
+// Systems of few unknowns are factorized as a whole: one iteration and what the shift of the
+// diagonal costs, with slopes, masses, periodic axes, cut cells, and ratios of stiffness.
 TEST(SplineMultigrid, FactorsOfAll)
 {
   auto heavy = slope(12), patches = block(2, 16), ring = block(2, 13), cubic = block(2, 12);
@@ -303,8 +291,7 @@ TEST(SplineMultigrid, FactorsOfAll)
   EXPECT_GT(system.multigrid->levels(), 1);
 }
 
-// Factors in an envelope against those of a dense matrix: numbers of unknowns that fill blocks or
-// not, parts that are not joined, and all instruction sets.
+// Factors in an envelope against a dense matrix: any block, parts, and instruction sets.
 TEST(EnvelopeFactors, SolveLikeDenseOnes)
 {
   for (const char *isa : {"baseline", "avx2", "avx512"})
@@ -338,8 +325,7 @@ TEST(EnvelopeFactors, SolveLikeDenseOnes)
     }
 }
 
-/** A matrix on a lattice of n by m points in pieces of so many columns, a shift apart from
- *  singular. */
+/** A matrix on n by m points in pieces of so many columns, a shift apart from singular. */
 Eigen::SparseMatrix<double> springs(int n, int m, int piece, double shift = 0.01)
 {
   std::vector<Eigen::Triplet<double>> entries;
@@ -360,8 +346,7 @@ Eigen::SparseMatrix<double> springs(int n, int m, int piece, double shift = 0.01
 }
 
 // Halves that are eliminated towards the middle: the same on any number of ranks, bit by bit, each
-// of which has a half of the factors, and right in one piece, in pieces, and where hardly anything
-// is in the halves.
+// with a half of the factors, and right in one piece, in pieces, and with small halves.
 TEST(EnvelopeFactors, HalvesOnRanks)
 {
   for (const auto &[n, m, piece] : {std::array<int, 3>{60, 9, 1000},
@@ -444,8 +429,7 @@ TEST(EnvelopeFactors, RoundedOnes)
       }
 }
 
-// Nodes come to other ranks, which also know some of others, and keep their places; not if one is
-// missing, new, or another one.
+// Nodes come to other ranks, which know some, and keep their places; not if one is missing or new.
 TEST(SharedNodes, KeepTheirOrder)
 {
   constexpr int NRANKS = 3, N = 20, NONE = -1;

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: mpi physics ranks
 // mpi: 1 2 3 4
@@ -37,7 +37,7 @@ class Ranks : public ::testing::TestWithParam<std::string> {
 
     // the scene does move and deform: the comparison means something
     double strain = 0.0;
-    for (auto &s : a) strain = std::max(strain, std::abs(s.F[0] - 1.0));
+    for (auto &s : a) grow(strain, s.F[0] - 1.0);
     EXPECT_GT(strain, 0.01);
   }
 };
@@ -114,14 +114,12 @@ TEST(RanksWithoutPoints, Slabs)
 {
   const std::string scene = space("lj", "f f f", "0 40 0 8 0 8") +
       body("block 1 6 2 6 2 6", "density 1.0 neohookean 10.0 0.3") +
-      "velocity all set 1.0 0.0 0.0\nvelocity all ramp vy -0.8 0.8 x 1 6 sum yes\n"
-      "timestep 0.05\n";
+      "velocity all set 1.0 0.0 0.0\nvelocity all ramp vy -0.8 0.8 x 1 6 sum yes\ntimestep 0.05\n";
   OnRanks run(scene, "run 400\n", "processors " + std::to_string(nranks()) + " 1 1\n");
   EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
 }
 
-// walls of all kinds, plasticity, variable time step and energies: what they add up must not
-// depend on which rank has which node
+// walls of all kinds, plasticity, variable steps, energies: sums must not depend on ranks
 static const std::string walls = space("lj", "f f f", "0 12 0 8 0 8") +
     body("block 1 11 1 7 0 4",
          "density 1.0 eos linear 20.0 strength j2 10.0 0.3 hardening linear 1.0 viscosity "
@@ -167,7 +165,7 @@ PARAMETER_TEST(Walls, ReactionsAndEnergiesAgree, std::string,
         b.push_back(d < 0 ? p->compute_scalar() : p->compute_vector(d));
       }
     double scale = 0.0;
-    for (double value : a) scale = std::max(scale, std::abs(value));
+    for (double value : a) grow(scale, value);
     EXPECT_GT(scale, 1.0);
     for (std::size_t k = 0; k < a.size(); k++) EXPECT_NEAR(a[k], b[k], 1.0e-11 * scale) << k;
 
@@ -181,8 +179,8 @@ PARAMETER_TEST(Walls, ReactionsAndEnergiesAgree, std::string,
   }
 }
 
-// A bar across all ranks, at rest. Points next to a border at x = 8k reach the nodes 8k-1, 8k, 8k+1 of both ranks, and in the
-// plane of the border 7x7 nodes. Blocks next to a wall are sent as a whole
+// A bar across ranks, at rest. Points next to a border x = 8k reach the nodes 8k-1, 8k, 8k+1 of
+// both ranks, and in the plane of the border 7x7 nodes. Blocks next to a wall are sent as a whole
 TEST(Halo, SendsNodesThatPointsOfBothRanksReach)
 {
   const std::string n = std::to_string(nranks());
@@ -214,8 +212,8 @@ TEST(Halo, SendsNodesThatPointsOfBothRanksReach)
   }
 }
 
-// A wall pairs nodes on its two sides, and a cut cell those of several planes: with a border of ranks two cells above it a
-// rank needs nodes that only the other's points reach
+// A wall pairs nodes on its two sides, and a cut cell those of several planes: with a border of
+// ranks two cells above it a rank needs nodes that only the other's points reach
 PARAMETER_TEST(HaloWalls, BelowABorder, std::string,
                Values("slip", "stick", "slip friction 0.3", "separate"))
 {
@@ -226,9 +224,8 @@ PARAMETER_TEST(HaloWalls, BelowABorder, std::string,
                     body("block INF INF INF INF 0 4", "density 1.0 neohookean 20.0 0.3",
                          std::string("1.0 origin 0 0 ") + origin) +
                     "fix w all mpm/boundary zlo " + GetParam() +
-                    "\nfix g all gravity 0.1 vector 0.3 0 -1\n"
-                    "velocity all ramp vx -0.4 0.4 z 0 4\nvelocity all ramp vz 0 -0.4 x 0 8\n"
-                    "timestep 0.03\n",
+                    "\nfix g all gravity 0.1 vector 0.3 0 -1\nvelocity all ramp vx -0.4 0.4 z 0 4\n"
+                    "velocity all ramp vz 0 -0.4 x 0 8\ntimestep 0.03\n",
                 "run 100\n", "processors 1 1 " + n + "\n");
     EXPECT_LT(measured("other ranks", run.difference()), 1.0e-12);
   }
@@ -342,7 +339,7 @@ TEST(Grains, OnABlock)
     // grains and points have met: a block that is left alone stays at rest sideways
     double speed = 0.0, ngrains = 0.0;
     for (const auto &s : run.serial.gather()) {
-      if (s.type == 1.0) speed = std::max(speed, std::abs(s.v[0]));
+      if (s.type == 1.0) grow(speed, s.v[0]);
       if (s.type == 2.0) ngrains++;
     }
     EXPECT_EQ(ngrains, 48.0);
@@ -350,8 +347,7 @@ TEST(Grains, OnABlock)
   }
 }
 
-// shifting everything by a fraction of h changes only what theory says: nothing for a periodic
-// box whose lattice is shifted along
+// shifting everything by a fraction of h changes nothing in a periodic box with its lattice
 TEST(Translation, LatticeAndBodyTogether)
 {
   // points of create_points follow the lattice, so that both bodies are the same set of points

@@ -1,12 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: restart smoke ranks
 // mpi: 1 2 3
 // timeout: 900
 
-// A run continued from a restart file is the uninterrupted run, bit by bit on the same number of
-// ranks, and to round-off on another.
+// A run from a restart file is that run, bit by bit on as many ranks, to round-off on others.
 
 #include "mpm_lammps.h"
 
@@ -32,8 +31,7 @@ static const std::string points = "region one sphere 2.6 3.0 3.2 1.9\n"
                                   "create_points 1 region one ppc 2\n"
                                   "create_points 2 region two ppc 2\n";
 
-static const std::string start = "velocity one set 0.6 0.35 -0.4\n"
-                                 "velocity two set -0.5 0.1 -0.3\n";
+static const std::string start = "velocity one set 0.6 0.35 -0.4\nvelocity two set -0.5 0.1 -0.3\n";
 
 // a body of the total frame would fall through a floor that it does not touch at first
 static const std::string start_level = "velocity one set 0.6 0.35 0\nvelocity two set -0.5 0.1 0\n";
@@ -64,8 +62,7 @@ PARAMETER_TEST(Restart, ContinuesBitwise, std::string,
   EXPECT_LT(difference(expected, serial.gather()), 1.0e-11);
 }
 
-// the write_restart command between runs, and a file of one rank read by many; sums that were begun before have the same
-// digits, too
+// write_restart between runs, and a file of one rank read by many; sums begun before go on, too
 PARAMETER_TEST(RestartCommand, ContinuesBitwiseAndOnOtherRanks, std::string,
                Values("transfer apic", "shape cubic transfer flip 1.0 scheme usf"))
 {
@@ -136,8 +133,8 @@ TEST(RestartState, AffineMatrixAndHistoryAreInTheFile)
   }
 }
 
-/* Read_restart sets the skin to the default of the units of the file where they were others before: neighbor
-   lists are made at other steps then, and sums have another order. */
+/* Read_restart sets the skin to the default of the units of the file where they were others before:
+   neighbor lists are made at other steps then, and sums have another order. */
 TEST(RestartState, LostSkinHasAWarning)
 {
   const std::string more = "neighbor 0.3 bin\n", si = replaced(head, "units lj", "units si") + more;
@@ -233,8 +230,7 @@ TEST(RestartState, WhatWasDeletedIsInTheFile)
   EXPECT_NEAR(check(again), moving, 1.0e-10 * mass);
 }
 
-// velocities that are changed between runs change the affine matrices, also after a restart file,
-// and on any number of ranks; otherwise both continue
+// velocities changed between runs change affine matrices, also after a restart file, on any ranks
 TEST(RestartState, NewVelocitiesAreSeen)
 {
   const ScratchFile file("fit");
@@ -255,8 +251,7 @@ TEST(RestartState, NewVelocitiesAreSeen)
   }
 }
 
-// what was changed before the file is written counts like a change without a file: the next run sets its
-// time step anew
+// a change before the file is written counts as without a file: a new time step in the next run
 TEST(RestartState, TimeStepIsThatWithoutTheFile)
 {
   const ScratchFile file("dt");

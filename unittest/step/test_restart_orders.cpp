@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: restart
 
-// What stands before and after read_restart, in any order, forgotten, or changed: the run goes on bit by bit (to round-off
-// with materials in another order), or it says what is not as in the run that wrote the file.
+// What stands before and after read_restart, in any order, forgotten, or changed: the run goes on
+// bit by bit (to round-off with materials in another order), or says what has changed.
 
 #include "mpm_lammps.h"
 
@@ -35,7 +35,7 @@ static const std::string points =
 static const std::string head = plane("lj", "f f", "0 8 0 8", 2);
 static const std::string pair = "pair_style zero 1.0\npair_coeff * *\n";
 
-/** The run that writes the file, and what it does in the next 20 steps; and what another input makes of the file. */
+/** The run that writes the file, its next 20 steps, and what another input makes of the file. */
 struct Continuations {
   const ScratchFile file{"bin"};
   std::vector<Scene::State> expected;
@@ -272,7 +272,7 @@ TEST(RestartOrders, TinyVelocitiesAreRead)
   EXPECT_TRUE(found.identical);
 }
 
-// exclusions that keep grains and points of a body from pushing on each other; and fixes without a state
+// exclusions that keep grains and points of a body apart; and fixes without a state
 TEST(RestartOrders, GrainsGoOnAsTheyWere)
 {
   const std::string lists = "neighbor 0.3 bin\ncomm_modify vel yes\n";
@@ -283,8 +283,7 @@ TEST(RestartOrders, GrainsGoOnAsTheyWere)
                            "fix m solid mpm/material density 1 neohookean 10 0.3\n"
                            "fix skin solid mpm/surface\n";
   const std::string move = "fix move balls nve/sphere\n",
-                    wall = "fix w balls wall/gran hooke 20 "
-                           "NULL 0 NULL 0 0 zplane 0 8\n";
+                    wall = "fix w balls wall/gran hooke 20 NULL 0 NULL 0 0 zplane 0 8\n";
   const std::string scene = "units lj\nboundary p p f\natom_style hybrid sphere mpm\n" + lists +
       "region box block 0 4 0 4 0 8\ncreate_box 2 box\nfix grid all mpm 1.0\n"
       "region solid block INF INF INF INF 0 2\ncreate_points 1 region solid ppc 2\n"
@@ -319,7 +318,7 @@ TEST(RestartOrders, GrainsGoOnAsTheyWere)
       EXPECT_THAT(found.error + found.warnings, ContainsRegex(warning)) << text;
   }
 
-  // LAMMPS's files do not have the cutoffs of granular, which are anything then: too small, or large enough
+  // LAMMPS's files lack the cutoffs of granular, which may be too small, or large enough
   const auto no_pair = run.go_on("", lists + mine + move + wall + exclude);
   if (!no_pair.identical)
     EXPECT_THAT(no_pair.error, HasSubstr("give pair_style and pair_coeff again"));

@@ -1,12 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
 
-// Properties that all variants share, or that tell them apart: conservation, noise at rest, what
-// the place of a body on the lattice changes, stretch at which a body comes apart, equivalences.
-// A new variant is a line in the lists.
+// Properties that variants share, or that tell them apart: conservation, noise, places on the
+// lattice, stretch at which a body comes apart. A new variant is a line in the lists.
 
 #include "mpm_lammps.h"
 
@@ -41,7 +40,7 @@ static const char *const transfers[] = {"transfer pic",
 
 static std::vector<std::string> all_variants()
 {
-  // what the lists above leave out: the other schemes, polypic, domains, light nodes, the total frame
+  // what the lists above leave out: other schemes, polypic, domains, light nodes, the total frame
   std::vector<std::string> all = {"shape cubic transfer polypic",
                                   "shape linear light 0.5 transfer apic",
                                   "shape linear light 0.5 transfer aflip 1.0 scheme musl",
@@ -60,8 +59,7 @@ static std::vector<std::string> all_variants()
   return all;
 }
 
-/* --------------------------- a rectangle that is thrown, spins, and vibrates: mass and momentum */
-
+// a rectangle that is thrown, spins, and vibrates: mass and momentum
 static std::string rectangle(const std::string &block, const std::string &options)
 {
   return plane("si", "f f", "-3 3 -3 3", 1, 0.04) +
@@ -81,18 +79,15 @@ PARAMETER_TEST(Conservation, MassAndMomentum, std::string, ValuesIn(all_variants
   const auto end = run.sums();
   EXPECT_EQ(end.mass, start.mass);
   for (int d = 0; d < 2; d++) EXPECT_NEAR(end.p[d], start.p[d], 1.0e-12 * start.mass);
-  // a point with free corners is put in the middle of them, which parts from its path in second order
+  // a point with free corners is put in their middle, which parts from its path in second order
   const double exact = GetParam().find("cpdi2") == std::string::npos ? 1.0e-12 : 1.0e-5;
   for (int d = 0; d < 2; d++)
     EXPECT_NEAR(end.x[d], start.x[d] + 300 * 2.0e-4 * start.p[d] / start.mass, exact);
 }
 
-/* ----------------------------------------------------------------------
-   Noise at rest: a free body whose points have small random velocities, which the lattice sees in
-   part only. It must not grow, whatever the transfer leaves of it, as the null space of the
-   transfers gives way to forces that points cannot see, or the reverse.
-------------------------------------------------------------------------- */
-
+// Noise at rest: a free body whose points have small random velocities, which the lattice sees in
+// part only. It must not grow, whatever the transfer leaves of it, as the null space of the
+// transfers gives way to forces that points cannot see, or the reverse.
 PARAMETER_TEST(NoiseAtRest, DoesNotGrow, std::string, ValuesIn(all_variants()))
 {
   LONG_AFTER(26);
@@ -115,14 +110,11 @@ PARAMETER_TEST(NoiseAtRest, DoesNotGrow, std::string, ValuesIn(all_variants()))
   EXPECT_EQ(left < 0.01, !keeps);
 }
 
-/* ----------------------------------------------------------------------
-   Noise of points that change cells: a periodic medium under the uniform pressure p = 0.01 K, with points
-   0.7 node spacings apart along both axes. Nothing should happen, at rest or in flight over the lattice.
-   What nodes feel is the sum of p V_p grad N, which is zero for points that are boxes side by side. For
-   B-splines of order n it is, by Poisson's summation, a wave of k = 2 pi/0.7 with the amplitude
-   2 p k sinc(k h/2)^(n+1), and smaller ones of 2 k, 3 k, ..., all of which add up to sums over the points.
-------------------------------------------------------------------------- */
-
+// Noise of points that change cells: a periodic medium under the pressure p = 0.01 K, with points
+// 0.7 node spacings apart. Nothing should happen, at rest or in flight. What nodes feel is the sum
+// of p V_p grad N, which is zero for points that are boxes side by side. For B-splines of order n
+// it is, by Poisson's summation, a wave of k = 2 pi/0.7 with the amplitude 2 p k sinc(k h/2)^(n+1),
+// and smaller ones of 2 k, 3 k, ..., all of which add up to sums over the points.
 struct Crossing {
   const char *shape;
   int order;                                // of B-splines, 0: none
@@ -175,8 +167,8 @@ TEST_P(CrossingNoise, ForcesOnNodes)
     for (int m = 1; m < 2000; m++)
       waves += 2.0 * m * k * pow(sin(0.5 * m * k) / (0.5 * m * k), order + 1) *
           sin(m * k * (node - 0.35));
-    exact = std::max(exact, std::abs(slopes / sum));
-    wave = std::max(wave, std::abs(waves / 0.7 / sum));
+    grow(exact, slopes / sum);
+    grow(wave, waves / 0.7 / sum);
   }
   EXPECT_NEAR(most / P / exact, 1.0, 1.0e-10);
   EXPECT_NEAR(wave / exact, 1.0,
@@ -195,8 +187,8 @@ TEST_P(CrossingNoise, VelocityInFlight)
     double most = 0.0;
     run.each_step([&](double **) {
       for (int i = 0; i < run.n(); i++) {
-        most = std::max(most, std::abs(run.v()[i][0] - V));
-        most = std::max(most, std::abs(run.v()[i][1] - 0.7 * V));
+        grow(most, run.v()[i][0] - V);
+        grow(most, run.v()[i][1] - 0.7 * V);
       }
     });
     run.commands("run 400\n");
@@ -213,12 +205,8 @@ static const Crossing crossing_noise_cases[] = {
     {"shape cpdi2", 0, 0.0, 1.0e-11, 1.0e-11}};
 INSTANTIATE_TEST_SUITE_P(Shapes, CrossingNoise, ::testing::ValuesIn(crossing_noise_cases));
 
-/* ----------------------------------------------------------------------
-   A free rectangle begins to stretch along its own axis. What it has reached after about a quarter
-   of its period must not depend on how it lies on the lattice: shifts by fractions of a cell, and
-   rotations of the body.
-------------------------------------------------------------------------- */
-
+// A free rectangle begins to stretch along its own axis. What it has reached after a quarter of its
+// period must not depend on how it lies on the lattice: shifts and rotations.
 static double extension(const std::string &options, double shift, double degrees)
 {
   Scene run(rectangle("-0.8 0.8 -0.4 0.4", options) +
@@ -265,9 +253,9 @@ TEST_P(GridInvariance, ShiftsAndRotations)
 
 INSTANTIATE_TEST_SUITE_P(All, GridInvariance, ::testing::ValuesIn(shapes));
 
-// Fracture: not asked for here. With gradients that jump at the faces of cells (linear, bernstein), the largest
-// extension is that of the first shift, which puts layers of points next to faces and into otherwise empty
-// cells. On faces, with a shift of a quarter of a cell, round-off would decide.
+// Fracture. With gradients that jump at the faces of cells (linear, bernstein), the largest
+// extension is that of the first shift, which puts layers of points next to faces and into
+// otherwise empty cells. On faces, with a shift of a quarter of a cell, round-off would decide.
 static const Variant grid_invariance_cases[] = {
     {"shape cpdi", 0.01, 0.0, 0.0},
     {"shape cpdi2", 0.01, 0.0, 0.0},
@@ -277,12 +265,9 @@ static const Variant grid_invariance_cases[] = {
     {"shape bernstein scheme musl frame total", 0.08, 0.0, 0.0}};
 INSTANTIATE_TEST_SUITE_P(More, GridInvariance, ::testing::ValuesIn(grid_invariance_cases));
 
-/* ----------------------------------------------------------------------
-   A bar in uniaxial strain, 12 cells between the grips, is pulled at constant velocity. The total
-   frame passes a stretch of 11 (test_total.cpp). In the updated frame it comes apart: the middle half stays 10 %
-   behind, or its mean stress falls below 70 % of lambda ln F/F + mu (F - 1/F).
-------------------------------------------------------------------------- */
-
+// A bar in uniaxial strain, 12 cells between the grips, is pulled at constant velocity. The total
+// frame passes a stretch of 11 (test_total.cpp). In the updated frame it comes apart: the middle
+// half stays 10 % behind, or its mean stress falls below 70 % of lambda ln F/F + mu (F - 1/F).
 static double fracture(const std::string &options)
 {
   const double E = 1.0e6, nu = 0.3, rate = 2.5, dt = 5.0e-4;
@@ -307,8 +292,7 @@ static double fracture(const std::string &options)
     for (int i = 0; i < run.n(); i++) {
       const double X = run.reference(i)[0] - 2.0;
       if (std::abs(X) > 1.0) continue;
-      double sigma[6];
-      run.points().cauchy(i, sigma);
+      const auto sigma = run.cauchy(i);
       mean += sigma[0];
       n += 1.0;
       xX += X * run.x()[i][0];
@@ -329,12 +313,9 @@ PARAMETER_TEST(Fracture, Stretch, Variant, ValuesIn(shapes))
   EXPECT_LT(stretch, GetParam().most);
 }
 
-/* ----------------------------------------------------------------------
-   The numbers of the reference, about 2, 3, and 4, are those of evenly stretched points, half a cell apart at first, under a
-   uniform stress: where a gap carries nothing, and the whole stress is a force on the node next to it. 10 %, as gaps
-   of all places in their cells are sampled by 40 of them, and for the word about
-------------------------------------------------------------------------- */
-
+// The numbers of the reference, about 2, 3, and 4, are those of evenly stretched points, half a
+// cell apart at first, under a uniform stress: where a gap carries nothing, and the whole stress is
+// a force on the node next to it. 10 %, as 40 gaps sample all places in cells, and for "about"
 TEST(Fracture, EvenStretch)
 {
   const struct {
@@ -364,8 +345,6 @@ TEST(Fracture, EvenStretch)
                 0.1 * c.stretch);
   }
 }
-
-/* ---------------------------------------------------------------------- equivalences */
 
 // flip 0 is pic
 TEST(Equivalent, FlipZeroIsPic)
@@ -446,13 +425,10 @@ TEST(Equivalent, SchemesAgreeForSmallSteps)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Points fly apart with the velocity G X, nearly without stress, in steps of 1 and 4 in turns, and APIC is given its
-   matrix G M^-1: F is that of their motion, M(t) = I + G t. USF knows that of the steps before the last one, USAVG half of the last; what they
-   strain in the first step, M(-dt)^-1 or half of that, has no motion. Half a step of USAVG is right to third order,
-   (|G| dt)^3 with |G| = 0.5
-------------------------------------------------------------------------- */
-
+// Points fly apart with the velocity G X, nearly without stress, in steps of 1 and 4 in turns, and
+// APIC is given its matrix G M^-1: F is that of their motion, M(t) = I + G t. USF knows that of the
+// steps before the last one, USAVG half of the last; what they strain in the first step, M(-dt)^-1
+// or half of that, has no motion. Half a step of USAVG is right to (|G| dt)^3 with |G| = 0.5
 TEST(ChangingSteps, StrainIsThatOfTheMotion)
 {
   const std::array<double, 4> G = {0.2, -0.3, 0.4, -0.1};
@@ -494,8 +470,7 @@ TEST(ChangingSteps, StrainIsThatOfTheMotion)
     double worst = 0.0;
     const auto F = product(M(run.time() - c.late * last), inverse_M(-c.late * first));
     for (const auto &s : run.gather())
-      for (int k = 0; k < 4; k++)
-        worst = std::max(worst, std::abs(s.F[3 * (k / 2) + k % 2] - F[k]));
+      for (int k = 0; k < 4; k++) grow(worst, s.F[3 * (k / 2) + k % 2] - F[k]);
     EXPECT_LT(measured(std::string(c.scheme) + ": error of F", worst), c.tolerance);
   }
 }

@@ -1,16 +1,10 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_KERNEL_TESTING_H
 #define MPM_KERNEL_TESTING_H
 
-// Random numbers, comparisons, and all combinations for tests of the kernels. This header includes
-// the standard headers that these tests need.
+// Random numbers, comparisons, and combinations for tests of kernels; standard headers they need.
 
 #include "transfer/kernels.h"
 
@@ -28,8 +22,7 @@ namespace MPM_TEST {
 
 using Reals = std::vector<double>;
 
-/** Whether this is a build with sanitizers (test_sanitize.sh). Tests then need to reach each place
- *  in the code only, and repeat less often. */
+/** Is this a build with sanitizers (test_sanitize.sh)? Then tests repeat less often. */
 #if defined(MPM_SANITIZED)
 constexpr bool SANITIZED = true;
 #else
@@ -93,16 +86,14 @@ int g2p(MPM_NS::G2P kernel, Points &points, const double *tile, double *L = null
   return kernel(points.rows(), points.step, points.first, points.last, points.base, tile, L);
 }
 
-/** A tile and its shape. margin: nodes in front of the block; last: largest tile index of a base
- *  node; reach: nodes of the stencil behind a base node. */
+/** A tile and its shape. margin: nodes in front; last: largest base node; reach: nodes behind. */
 struct TileShape {
   int dim, stride_x, stride_y, margin, last, reach;
   double *tile;
   int reals;
 };
 
-/** Expects that prefetch, flush, load, and load_mean move random boxes of a tile to blocks and
- *  back. */
+/** Expects prefetch, flush, load, load_mean to move random boxes of a tile to blocks and back. */
 inline void expect_box_moves(const MPM_NS::TransferKernels &kernels, const TileShape &t)
 {
   const int side = MPM_NS::block_side(t.dim), shift = side - t.margin, nreal = kernels.nreal;

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 // timeout: 300
@@ -17,8 +12,6 @@
 
 using namespace MPM_NS;
 using namespace MPM_TEST;
-
-namespace {
 
 /** Corners of a cube of half edge size, each moved by up to noise. */
 template <int DIM> void distorted(double size, double noise, double *x)
@@ -382,8 +375,7 @@ struct NodeSums {
   }
 };
 
-// from the nodes to the points and back, the field stays as it is: APIC keeps all of its angular
-// momentum
+// from nodes to points and back, the field stays as it is: APIC keeps all of its angular momentum
 
 TEST_P(ApicKernels, KeepAngularMomentum)
 {
@@ -409,10 +401,9 @@ TEST_P(ApicKernels, KeepAngularMomentum)
     EXPECT_NEAR(after.spin[d], before.spin[d], 1e-13 * before.mass * 8.0 * points.step.h);
 }
 
-// Again and again from points to nodes and back: with APIC no field gains energy, as the affine
-// field of a point is the one nearest to what the nodes have. That of the velocity gradient (TPIC)
-// is not: in domains that are sheared by 6, waves as long as a domain grow, fastest where corners
-// are on nodes.
+// Again and again from points to nodes and back: with APIC no field gains energy, as a point's
+// affine field is the nearest to what nodes have. That of TPIC is not: in domains that are sheared
+// by 6, waves as long as a domain grow, fastest where corners are on nodes.
 
 TEST_P(Kernels, ShearedDomainsGainNoEnergy)
 {
@@ -471,8 +462,7 @@ TEST_P(Kernels, InvertedDomainsAreReported)
   }
 }
 
-// a corner that is pushed in nearly to the opposite one: the size is positive, but not all weights
-// are
+// a corner pushed in nearly to the opposite one: the size is positive, but not all weights are
 
 TEST_P(FreeCorners, OfFoldedDomainsAreReported)
 {
@@ -506,5 +496,3 @@ bool is_apic(const Case &c)
 INSTANTIATE_TEST_SUITE_P(All, Kernels, all_cases({CPDI, CPDI2}), case_name);
 INSTANTIATE_TEST_SUITE_P(All, ApicKernels, all_cases({CPDI, CPDI2}, is_apic), case_name);
 INSTANTIATE_TEST_SUITE_P(All, FreeCorners, all_cases({CPDI2}), case_name);
-
-}    // namespace

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 // timeout: 900
@@ -23,8 +18,6 @@
 
 using namespace MPM_NS;
 using namespace MPM_TEST;
-
-namespace {
 
 /** Points of which the rows [first,last) lie in the tile of a block; arrays are not padded. */
 struct Points {
@@ -194,8 +187,7 @@ std::vector<int> counts()
   return n;
 }
 
-/** Sums and products of numbers around 1 with up to a few hundred terms in another order: the
- *  difference stays below a few hundred roundings of 1.1e-16. */
+/** Sums of a few hundred terms around 1 in another order differ by a few hundred roundings. */
 constexpr double SAME = 1.0e-13;
 
 TEST_P(ComparedKernels, P2GAgreesWithReference)
@@ -652,8 +644,7 @@ class Tables : public ::testing::TestWithParam<const char *> {
   }
 };
 
-/** Rows to a batch: F <- (I + dt L) F, and Kirchhoff to Cauchy stress with the old volume. Back
- *  with the new volume, but not for points that are inverted. */
+/** Rows to a batch: F <- (I + dt L) F, Cauchy stress with the old volume; back with the new one. */
 TEST_P(Tables, BatchesAgreeWithMatrixAlgebra)
 {
   for (int dim : {2, 3})
@@ -823,5 +814,3 @@ TEST(Select, ByEnvironment)
   EXPECT_EQ(MPMKernels::select(), nullptr);
   unsetenv("MPM_ISA");
 }
-
-}    // namespace

@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input ranks
 // mpi: 1 3
@@ -14,8 +9,6 @@
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 const char *const shapes[] = {"shape quadratic", "shape cubic"};
 
@@ -60,11 +53,7 @@ double field(int dim, const double *x, int i, int along)
   return sum;
 }
 
-}    // namespace
-
-// a field of products of coordinates goes to the nodes and back without a change, at all points, if
-// those are given its modes, whatever the instruction set; apic, which has no such modes, changes
-// it
+// a field of products goes to nodes and back if points have its modes; apic changes it
 
 TEST(Polypic, RoundTrip)
 {
@@ -92,13 +81,11 @@ TEST(Polypic, RoundTrip)
           double worst = 0.0, modes = 0.0;
           for (int i = 0; i < run.n(); i++)
             for (int d = 0; d < dim; d++) {
-              worst = std::max(worst, std::fabs(run.v()[i][d] - field(dim, run.x()[i], d, 0)));
+              grow(worst, run.v()[i][d] - field(dim, run.x()[i], d, 0));
               for (int a = 0; a < dim; a++)
-                worst = std::max(worst,
-                                 std::fabs(C[i][dim * a + d] - field(dim, run.x()[i], d, 1 << a)));
+                grow(worst, C[i][dim * a + d] - field(dim, run.x()[i], d, 1 << a));
               for (int m = 0; m < nmode && poly; m++)
-                modes = std::max(modes,
-                                 std::fabs(Q[i][dim * m + d] - field(dim, run.x()[i], d, bits[m])));
+                grow(modes, Q[i][dim * m + d] - field(dim, run.x()[i], d, bits[m]));
             }
           if (poly) {
             EXPECT_LT(worst, 1e-11);
@@ -110,8 +97,7 @@ TEST(Polypic, RoundTrip)
 }
 
 // momentum and angular momentum (with that of the affine fields) in elastic motion; with musl and
-// usavg, points move with other velocities than they have: the manual promises 1e-4 of angular
-// momentum, and what it changes is known
+// usavg, points move with other velocities: 1e-4 of angular momentum is promised
 
 TEST(Polypic, Conservation)
 {

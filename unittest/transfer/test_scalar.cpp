@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -16,8 +11,6 @@
 
 using namespace MPM_NS;
 using namespace MPM_TEST;
-
-namespace {
 
 constexpr Shape SHAPES[] = {LINEAR, QUADRATIC, CUBIC, GIMP, BERNSTEIN};
 
@@ -89,8 +82,6 @@ template <class F> void for_all(const F &f)
         }
   }
 }
-
-}    // namespace
 
 TEST(Scalar, IsThatOfThePlainLoops)
 {

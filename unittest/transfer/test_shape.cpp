@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 
@@ -38,8 +33,7 @@ template <class Spline, class Check> static void at_positions(Check check)
   }
 }
 
-/** Value of the B-spline of the order at distance x from its node, from its textbook definition as
- *  the centred average of the spline one order lower. */
+/** B-spline at distance x from its node, the centred average of the spline one order lower. */
 static double bspline(int order, double x)
 {
   if (order == 0) return x >= -0.5 && x < 0.5 ? 1.0 : 0.0;
@@ -134,8 +128,7 @@ TYPED_TEST(Spline, SecondMoment)
 TYPED_TEST(Spline, GradientIsTheDerivative)
 {
   at_positions<TypeParam>([](double x, double, double f) {
-    // Central differences with the step d are exact up to d^2/6 times the third derivative (at most
-    // 3, cubic only) and the rounding error 1e-16 / d.
+    // Central differences: d^2/6 times the third derivative (at most 3, cubic), rounding 1e-16/d.
     const double d = 1.0e-5;
     const Nodes<TypeParam> low(f - d), at(f), high(f + d);
     for (int i = 0; i < TypeParam::nodes; i++)
@@ -183,8 +176,7 @@ TYPED_TEST(Spline, IsConstexpr)
 
 class GimpShape : public ::testing::TestWithParam<double> {
  protected:
-  /** Calls check(distance to the middle node, fraction) at random places and at those where the
-   *  function changes its form. */
+  /** Calls check(distance to the middle node, fraction) at random places and where pieces meet. */
   template <class Check> void at_positions(Check check) const
   {
     const double s = GetParam();

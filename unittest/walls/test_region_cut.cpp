@@ -1,10 +1,10 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit
 // mpi: 1 4
 
-// create_points ... cut yes: points at the surface of a region have the part of their cell that is inside.
+// create_points ... cut yes: points at the surface of a region have the inner part of their cell.
 
 #include "body_testing.h"
 #include "mesh/stl_testing.h"
@@ -82,7 +82,7 @@ TEST(RegionCut, CentersAreThoseOfTheRegion)
   for (int d = 0; d < 3; d++) EXPECT_NEAR(moments[d], 8.0 / 15.0 * PI, 1.0e-3 * 8.0 / 15.0 * PI);
 }
 
-// A row of cells that ends somewhere in the last one: no point has less than a tenth of a cell, and no volume is lost.
+// A row that ends somewhere in its last cell: no point below a tenth of a cell, no volume lost.
 TEST(RegionCut, LightPartsGoToANeighbor)
 {
   const struct {
@@ -140,7 +140,7 @@ TEST(RegionCut, AnyNumberOfRanks)
   }
 }
 
-// A ball hits a wall: no step is shorter than with whole points, it comes back as fast, and energy does not grow.
+// A ball hits a wall: steps as with whole points, it comes back as fast, and energy does not grow.
 TEST(RegionCut, LightPointsAreStable)
 {
   double speed[2], step[2];
@@ -164,16 +164,15 @@ TEST(RegionCut, LightPointsAreStable)
               0.02 * speed[false]);
 }
 
-// A surface that is a thousand times as large as the box, such as one in millimeters: its cells outside of the box, 1e9 of them, are not
-// looked at. In the box are its corner, or its oblique face, x + y + z = 1/2.
+// A surface a thousand times as large as the box, as one in millimeters: its 1e9 cells outside are
+// not looked at. In the box are its corner, or its oblique face, x + y + z = 1/2.
 TEST(RegionCut, OfALargeBodyOnlyThePartInTheBox)
 {
   const std::array<double, 3> o = {0, 0, 0}, x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
   const ScratchFile file("large.stl", text_of({{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}));
   const std::string corner = "1000 0.3 0.2 0.1",
-                    oblique = "1000 -333.1666666666667 "
-                              "-333.1666666666667 -333.1666666666667";
-  // below the face is the share of a sum of three numbers, spread evenly from 0 to 1, that is less than t (J.O. Irwin, P. Hall, 1927)
+                    oblique = "1000 -333.1666666666667 -333.1666666666667 -333.1666666666667";
+  // below the face: sums of three even numbers from 0 to 1 below t (J.O. Irwin, P. Hall, 1927)
   const double t = 12.5 / 8.0;
   const struct {
     const std::string &where;

@@ -1,23 +1,22 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi
 // mpi: 1 2
 // timeout: 900
 
-// Elastic disks and spheres that roll or slip on walls that separate, with Coulomb friction. A rigid one
-// (disk: k = 1/2, sphere: 2/5) rolls when tan(theta) <= mu (1 + 1/k), with a = g sin/(1 + k); else a =
-// g (sin - mu cos) and alpha R = mu g cos/k. In place of the plane gravity is tilted.
+// Elastic disks and spheres that roll or slip on walls that separate, with Coulomb friction. A
+// rigid one (disk: k = 1/2, sphere: 2/5) rolls when tan(theta) <= mu (1 + 1/k), with a = g sin/(1 +
+// k); else a = g (sin - mu cos) and alpha R = mu g cos/k. In place of the plane gravity is tilted.
 //
-// A disk cut out of a lattice of points is a polygon: its lowest row is 3.6 h long. It jumps from edge to
-// edge, and where nearly all of the friction is needed (60 degrees) every jump makes it slip. Disks of
-// points in rings, settled on the wall before they are let go, are round: the error of the wall is seen.
+// A disk cut out of a lattice of points is a polygon: its lowest row is 3.6 h long. It jumps from
+// edge to edge, and where nearly all of the friction is needed (60 degrees) every jump makes it
+// slip. Disks of points in rings, settled on the wall before they are let go, are round: the error
+// of the wall is seen.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 struct Incline {
   double theta, mu;
@@ -32,8 +31,8 @@ struct Motion {
   double offset;       // slipping: of the normal force from the center of the body
 };
 
-/** wall: its fix, with friction MU and any region; turned: angle between plane and lattice (2d), whose
- *  surface then goes through (0.75, 2). */
+/** wall: its fix, with friction MU and any region; turned: angle between plane and lattice (2d),
+ *  whose surface then goes through (0.75, 2). */
 Motion roll(const Incline &incline, double h, const std::string &wall, int dim = 2,
             double turned = 0.0)
 {
@@ -55,9 +54,8 @@ Motion roll(const Incline &incline, double h, const std::string &wall, int dim =
       "variable w equal -angmom(all,z)/inertia(all,zz)\n" +
       strprintf("variable d atom (x-%.15g)*%.15g+(y-%.15g)*%.15g\ncompute d all reduce min v_d\n",
                 foot[0], n[0], foot[1], n[1]) +
-      "variable low equal c_d\n"
-      "variable done equal \"time >= 0.6\"\nfix halt all halt 1 v_done == 1 error continue\nrun "
-      "0\n";
+      "variable low equal c_d\nvariable done equal \"time >= 0.6\"\n"
+      "fix halt all halt 1 v_done == 1 error continue\nrun 0\n";
   Scene run(scene);
   const double x0 = run.variable("x");
   Motion m = {0.0, 0.0, 1.0, 0.0};
@@ -88,7 +86,6 @@ void expect_rigid(const Incline &incline, const Motion &m, double share, double 
     EXPECT_LT(measured(name + "offset of the force", std::abs(m.offset)), 0.25 * h);
   }
 }
-}    // namespace
 
 class RollingDisk : public ::testing::TestWithParam<double> {};
 
@@ -124,9 +121,7 @@ SERIAL_TEST(RollingSphere, OnAFace)
                0.05, 0.0);
 }
 
-namespace {
-
-/** Points in n/2 rings, n of them along the diameter: squares of the same area around each, as a mesh. */
+/** Points in n/2 rings, n along the diameter: squares of the same area around each, as a mesh. */
 std::string rings(const double *center, int n)
 {
   std::vector<std::array<double, 2>> points;
@@ -162,8 +157,7 @@ struct Wall {
   double velocity[2] = {0.0, 0.0};
 };
 
-/** The round disk settles, damped, without friction, and is let go on the incline. contact: on a plate that is
- *  a body. */
+/** The disk settles, damped, without friction, and is let go. contact: on a plate, a body. */
 Motion roll_round(const Incline &incline, double h, const Wall &wall, bool contact = false)
 {
   const double theta = incline.theta * M_PI / 180, turn = wall.turned * M_PI / 180;
@@ -270,8 +264,9 @@ std::string turned_plane(double turned, double height, const std::string &motion
       motion;
 }
 
-/** The benchmark asks for the way. What friction there was follows from it, and with the spin the place of the
- *  normal force, which must act below the center as well as nodes can tell: k alpha R^2 = f R - N offset. */
+/** The benchmark asks for the way. What friction there was follows from it, and with the spin the
+ *  place of the normal force, which must act below the center as well as nodes can tell: k alpha
+ *  R^2 = f R - N offset. */
 void expect_round(const Incline &incline, const Motion &m, const std::string &wall, double h)
 {
   const std::string name =
@@ -284,7 +279,6 @@ void expect_round(const Incline &incline, const Motion &m, const std::string &wa
   EXPECT_LT(measured(name + "offset of the force", std::abs(offset)), 0.25 * h);
   EXPECT_GE(measured(name + "sinks by", m.lowest), -0.15 * h);
 }
-}    // namespace
 
 // Planes that are regions, at any angle and place in a cell, are as good as faces.
 SERIAL_TEST(RoundDisk, OnRegions)
@@ -327,10 +321,7 @@ SERIAL_TEST(RollingSphere, OnATurnedPlane)
   expect_rigid({60, 0.6}, roll({60, 0.6}, 0.05, wall, 3, 30.0), 0.02, 0.05, 0.25 * 0.05);
 }
 
-namespace {
-
-/** The way along the wall in this time from rest, of a body that has settled, damped, without friction. begin: field,
- *  body, and material. */
+/** The way along the wall in this time, after settling. begin: field, body, and material. */
 double way_from_rest(const std::string &begin, int dim, const Incline &incline, double h,
                      const Wall &wall, const std::string &kind, double time)
 {
@@ -359,8 +350,8 @@ double way_from_rest(const std::string &begin, int dim, const Incline &incline, 
   return run.variable("x") - x0;
 }
 
-/** Of an elastic block of this height and shear wave speed whose foot sticks until the wave that it sends has the
- *  stress of friction: this grows with the time, density c g sin t, up to mu density g height cos. */
+/** Of an elastic block of this height and shear wave speed whose foot sticks until its wave has the
+ *  stress of friction: this grows, density c g sin t, up to mu density g height cos. */
 double way_of_block(const Incline &incline, double height, double c, double time)
 {
   const double theta = incline.theta * M_PI / 180, gt = g * std::sin(theta),
@@ -368,8 +359,8 @@ double way_of_block(const Incline &incline, double height, double c, double time
   return 0.5 * (gt - f) * time * time + 0.5 * f * sticks * time - f * sticks * sticks / 6.0;
 }
 
-/** A block, 0.8 wide and 0.3 high, of a material that damps its vibrations: without, it is the block that is measured,
- *  which begins to hop or, with slip, to brake by itself. */
+/** A block, 0.8 wide and 0.3 high, of a material that damps its vibrations: without, it is the
+ *  block that is measured, which begins to hop or, with slip, to brake by itself. */
 double expect_block(const Incline &incline, double h, const Wall &wall, const std::string &kind)
 {
   constexpr double height = 0.3, time = 0.4;
@@ -442,7 +433,6 @@ void expect_ball(const Incline &incline, double h, const Wall &wall)
                        way / (0.5 * a * time * time)),
               1.0, 0.02);
 }
-}    // namespace
 
 SERIAL_TEST(SlidingBlock, OnRegions)
 {

@@ -1,25 +1,23 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-// labels: physics
+// labels: physics ranks
 // mpi: 1 2
 
-// Keyword gain of fix mpm: energy that no work explains is told, and energy that work explains is not.
+// Keywords gain and apart of fix mpm: energy that no work explains is told, and a solid whose
+// points share too few nodes; nothing else is.
 
 #include "bad_input_testing.h"
-#include "meshgrid/mesh_grid_testing.h"
 
 #include "atom_vec.h"
-#include "comm.h"
 #include "field/mpm_point_map.h"
+#include "meshgrid/mesh_grid_testing.h"
 
 #include <regex>
 
 using namespace MPM_TEST;
 
-namespace {
-
-/** A block that moves through a periodic box, and gets a part of its kinetic energy out of nothing. */
+/** A block moves through a periodic box, and gets a part of its kinetic energy from nothing. */
 std::string drift(const char *gain)
 {
   return space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
@@ -38,11 +36,9 @@ struct Found {
 };
 Found told_by(const std::string &scene)
 {
-  const ScratchFile file("log");
-  Scene run("log " + file.name + "\n" + scene + "log none\n");
+  Scene run;
+  const auto text = log_of(run, scene);
   Found found;
-  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
-  const std::string text = file_text(file.name);
   const std::regex message("WARNING: Numerical errors have added the energy ([-+.e0-9]+) to the "
                            "material points by step [0-9]+ of this run, ([-+.e0-9]+) %");
   for (std::sregex_iterator at(text.begin(), text.end(), message), end; at != end; ++at) {
@@ -73,8 +69,9 @@ TEST(EnergyWatch, TellsWhatIsGained)
   EXPECT_EQ(told_by(drift("") + "velocity all set 2 0 0\nrun 400\n").warnings, 0);
 }
 
-// A block of 4 by 6 cells swings on a floor between planes of nodes, which it is put on without its weight, with 30 to 40 steps in a period. Its stored energy at the end of
-// a step, and the kinetic one of the middle, were up to 5 % of the energy in play; also in a run that begins in the middle of a vibration
+// A block of 4 by 6 cells swings on a floor between planes of nodes, which it is put on without its
+// weight, with 30 to 40 steps in a period. Its stored energy at the end of a step, and the kinetic
+// one of the middle, were up to 5 % of the energy in play; also in a run from its middle on
 TEST(EnergyWatch, VibrationsOfFewStepsAreNoGain)
 {
   struct {
@@ -100,8 +97,8 @@ TEST(EnergyWatch, VibrationsOfFewStepsAreNoGain)
   }
 }
 
-// A wave of 12 cells that starts with velocities alone. The watch took it that there was less stored energy a step before than at the
-// start, where it is zero, which seemed to be a gain of up to 3 %
+// A wave of 12 cells that starts with velocities alone. The watch took it that there was less
+// stored energy a step before than at the start, where it is zero, a gain of up to 3 %
 TEST(EnergyWatch, WavesThatStartWithoutStrainAreNoGain)
 {
   for (const char *transfer : {"flip 1.0", "aflip 1.0", "flip 1.0 scheme musl"})
@@ -121,8 +118,7 @@ TEST(EnergyWatch, WavesThatStartWithoutStrainAreNoGain)
 // Two blocks with sound speeds of sqrt(G/rho) = 1e-3 and less: their deformation stays what it is
 TEST(Summary, TellsStateEnergyAndTimeStep)
 {
-  const ScratchFile file("log");
-  Scene run("log " + file.name + "\n" + space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
+  Scene run(space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
             body("block 2 6 0 4 0 4", "density 2 linear 1e-6 0", "1.0") +
             "velocity all set 1 0 0\ngroup one id 17\nvelocity one set 1.5 0 0\n"
             "timestep 0.1\nrun 0 post no\n");
@@ -131,13 +127,10 @@ TEST(Summary, TellsStateEnergyAndTimeStep)
     if (atom->tag[i] == 5) run.points().F[i][0] = 0.75;
     if (atom->tag[i] == 9) run.points().F[i][4] = 1.25;
   }
-  run.commands("run 1\nlog none\n");
-  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
-  const std::string text = file_text(file.name);
+  const auto text = log_of(run, "run 1\n");
   const std::regex limit("1 steps, time step 0\\.1, at the end 0\\.([0-9]+) of the limit"),
       state("volumes 0\\.75[0-9]* \\(point 5\\) to 1\\.2[45][0-9]* \\(point 9\\) times the initial "
-            "ones, "
-            "speeds up to 1\\.[0-9]* \\(point 17\\)");
+            "ones, speeds up to 1\\.[0-9]* \\(point 17\\)");
   EXPECT_TRUE(std::regex_search(text, limit)) << text;
   EXPECT_TRUE(std::regex_search(text, state)) << text;
   EXPECT_EQ(text.find("energy in play"), std::string::npos) << "too short a run";
@@ -145,14 +138,11 @@ TEST(Summary, TellsStateEnergyAndTimeStep)
 
 TEST(Summary, TellsEnergies)
 {
-  const ScratchFile file("log");
-  Scene run("log " + file.name + "\n" + drift("") + faster(0.9) + faster(0.915) + "log none\n");
-  MPI_Barrier(MPI_COMM_WORLD);
-  const std::string text = file_text(file.name);
+  Scene run;
+  const auto text = log_of(run, drift("") + faster(0.9) + faster(0.915));
   const std::regex energy(
-      "energy at the end: kinetic ([0-9.]+), stored ([-.e0-9]+); since the start transfers "
-      "and friction took ([-.e0-9]+) \\(([-.e0-9]+) % of the energy in play\\), and numerical "
-      "errors "
+      "energy at the end: kinetic ([0-9.]+), stored ([-.e0-9]+); since the start transfers and "
+      "friction took ([-.e0-9]+) \\(([-.e0-9]+) % of the energy in play\\), and numerical errors "
       "added ([-.e0-9]+)");
   std::vector<std::smatch> found;
   for (std::sregex_iterator at(text.begin(), text.end(), energy), end; at != end; ++at)
@@ -178,8 +168,8 @@ TEST(EnergyWatch, StopsWhereAskedTo)
   EXPECT_EQ(goes_on.error(faster(1.05)), "");
 }
 
-// Linear functions with scheme usl amplify round-off at nodes of tiny mass, see Howto_mpm_stability; plasticity
-// keeps the points from being inverted at once
+// Linear functions with scheme usl amplify round-off at nodes of tiny mass, see
+// Howto_mpm_stability; plasticity keeps the points from being inverted at once
 TEST(EnergyWatch, SeesAnUnstableCombination)
 {
   const std::string scene = plane("lj", "p p", "0 12 0 12", 1, 0.5) +
@@ -193,7 +183,7 @@ TEST(EnergyWatch, SeesAnUnstableCombination)
   EXPECT_EQ(stable.error(replaced(scene, "SHAPE", "shape quadratic")), "");
 }
 
-// Friction that holds sand at rest between two walls has work at the nodes next to them that transfers give back
+// Friction that holds sand between two walls works at nodes next to them; transfers give it back
 TEST(EnergyWatch, IsSilentAtRest)
 {
   const std::string scene = plane("si", "f f", "0 1 0 1", 1, 0.05) +
@@ -204,8 +194,8 @@ TEST(EnergyWatch, IsSilentAtRest)
   EXPECT_EQ(told_by(scene).warnings, 0);
 }
 
-// In a bar at rest as much heat comes in as goes out: its energy changes by the round-off of its heat alone, which is the whole energy in
-// play, and more than that of a body that moves slowly
+// In a bar at rest as much heat comes in as goes out: its energy changes by the round-off of its
+// heat alone, which is the whole energy in play, and more than that of a body that moves slowly
 TEST(EnergyWatch, RoundOffOfHeatIsNoGain)
 {
   const std::string scene = space("si", "f f f", "0 1 0 0.1 0 0.1", 1, 0.05) +
@@ -215,8 +205,8 @@ TEST(EnergyWatch, RoundOffOfHeatIsNoGain)
   EXPECT_EQ(told_by(scene).warnings, 0);
 }
 
-// A load of five steps: a free block has the momentum of all of them, and no energy without work. With the velocities at the start of each
-// step alone, a fifth of its energy would be
+// A load of five steps: a free block has the momentum of all of them, and no energy without work.
+// With the velocities at the start of each step alone, a fifth of its energy would be
 TEST(EnergyWatch, KnowsTheWorkOfAShortLoad)
 {
   Scene run(space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +
@@ -254,8 +244,8 @@ void reverse(LAMMPS &lmp)
   for (auto *field : MPMField::all(&lmp)) field->map->valid = false;
 }
 
-/** Energies that the summaries of a wheel tell, whose left half goes up and whose right half goes down under gravity: their
- *  work is as much as its energy within 250 steps. Of 8448 points one in 16 is looked at in a step. */
+/** Energies that the summaries of a wheel tell, whose halves go up and down under gravity: work
+ *  like its energy in 250 steps. Of 8448 points one in 16 is looked at in a step. */
 std::vector<double> told_of_wheel(const std::string &more, bool reversed)
 {
   const ScratchFile file("log");
@@ -281,9 +271,9 @@ std::vector<double> told_of_wheel(const std::string &more, bool reversed)
   return told;
 }
 
-// Where the forces of different points do large work that adds up to little, an estimate that looks at some points twice and at
-// others never is wrong by as much as the energy in play. The turn of a point follows from its ID. Points are sorted where a
-// restart file is written
+// Where the forces of different points do large work that adds up to little, an estimate that looks
+// at some points twice and at others never is wrong by as much as the energy in play. The turn of a
+// point follows from its ID. Points are sorted where a restart file is written
 TEST(EnergyWatch, DoesNotDependOnTheOrderOfPoints)
 {
   const ScratchFile one("restart"), two("restart2");
@@ -300,8 +290,8 @@ TEST(EnergyWatch, DoesNotDependOnTheOrderOfPoints)
   }
 }
 
-// Where the neighbor lists are those of grains and the surface, which are first in memory, most points are not in them. The
-// grain falls like the block and does not meet it
+// Where the neighbor lists are those of grains and the surface, which are first in memory, most
+// points are not in them. The grain falls like the block and does not meet it
 TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
 {
   Scene run(replaced(space("lj", "p p p", "0 24 0 12 0 12", 2, 0.5), "atom_style mpm",
@@ -317,8 +307,8 @@ TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
   EXPECT_NEAR(run.v()[run.n() - 1][0], 3.0, 1e-6);    // g t
 }
 
-// What elements add to the forces on their nodes is the change of their stored energy, and no work from outside. A bar
-// that is let go with v = x and vibrates along its axis, until most of its energy is stored
+// What elements add to the forces on their nodes is the change of their stored energy, and no work
+// from outside. A bar vibrates from v = x until most of its energy is stored
 TEST(EnergyWatch, KnowsForcesOfElements)
 {
   const ScratchFile mesh("bar.msh", gmsh(QUADS, {8, 1, 0}, [](double x, double y, double) {
@@ -358,17 +348,17 @@ PARAMETER_TEST(EnergyWatchWork, IsNoGain, Work, ValuesIn(works))
             body("block 8 12 0 4 0 4", "density 2 neohookean 300 0.3", "1.0 gain error 0.02") +
             "variable t equal step*dt\nvariable speed equal 0.3*v_t\n"
             "variable way equal 0.15*v_t*v_t\nvariable centre equal v_way+6\n"
-            "region still block INF 9.1 INF INF INF INF\n");
-  run.commands("timestep 0.01\n");
+            "region still block INF 9.1 INF INF INF INF\ntimestep 0.01\n");
   EXPECT_EQ(run.error(replaced(GetParam().text, "GRIP", grip) + "run 1000\n"), "");
   double moving = 0.0;
   for (int i = 0; i < run.n(); i++) moving += run.v()[i][0];
   EXPECT_GT(std::abs(over_ranks(moving)), 0.1 * over_ranks(run.n()));    // there was work
 }
 
-// Loads on a part of a bar, of which one end is held: what the watch tells is what the ledger has in transfer and integration, both of
-// which take the work of all loads at the nodes. With the points' own velocities, those of aflip at the end of the bar had 14 % of the
-// energy too little work, and those of flip were 20 % off one way and 8 % the other
+// Loads on a part of a bar, of which one end is held: what the watch tells is what the ledger has
+// in transfer and integration, both of which take the work of all loads at the nodes. With the
+// points' own velocities, those of aflip at the end of the bar had 14 % of the energy too little
+// work, and those of flip were 20 % off one way and 8 % the other
 struct LoadOnABar {
   const char *name, *text;
 };
@@ -419,4 +409,77 @@ PARAMETER_TEST(EnergyWatchLoads, WorkIsThatOfTheLedger, LoadOnABar, ValuesIn(loa
   }
 }
 
-}    // namespace
+constexpr const char *SOFT = "neohookean 1e-4 0.3";
+
+struct Told {
+  int warnings = 0;
+  double cells = 0.0;    ///< between points
+};
+
+/** A block of points, two per cell and axis, flies apart along an axis with a linear velocity; it
+ *  is so soft that nothing slows it, but its strain is that of the stretch. */
+Told told_by(double stretch, const std::string &grid = "", const std::string &material = SOFT,
+             double direction = 0.1, int axis = 0)
+{
+  const char *const extents[] = {"-16 16 0 4", "0 4 -16 16", "0 3 0 3 -16 16"};
+  const char *const regions[] = {"block -4 4 INF INF INF INF", "block INF INF -4 4 INF INF",
+                                 "block INF INF INF INF -4 4"};
+  const ScratchFile file("log");
+  Scene run("log " + file.name + "\n" +
+            (axis < 2 ? plane("lj", "p p", extents[axis], 1, 0.5)
+                      : space("lj", "p p p", extents[axis], 1, 0.5)) +
+            body(regions[axis], "density 1 " + material, "1.0 " + grid) +
+            strprintf("variable pull atom %.17g*%c\nvelocity all set %s\ntimestep 0.02\n"
+                      "run %.0f\nlog none\n",
+                      direction, "xyz"[axis],
+                      axis == 0       ? "v_pull 0 0"
+                          : axis == 1 ? "0 v_pull 0"
+                                      : "0 0 v_pull",
+                      (stretch - 1.0) / (0.02 * direction)));
+  Told told;
+  MPI_Barrier(MPI_COMM_WORLD);    // the first rank writes the file
+  const std::string text = file_text(file.name);
+  const std::regex message(
+      "WARNING: .* under tension .* ([-+.e0-9]+) node spacings \\(([-+.e0-9]+)\\) apart");
+  for (std::sregex_iterator at(text.begin(), text.end(), message), end; at != end; ++at) {
+    told.warnings++;
+    told.cells = std::stod((*at)[1]);
+    EXPECT_NEAR(std::stod((*at)[2]), told.cells, 0.006);    // the spacing is 1
+  }
+  return told;
+}
+
+TEST(FractureWatch, TellsHowFarPointsAreApart)
+{
+  // half a spacing at the start; the limit is 1.2, or 1.0 for gimp
+  EXPECT_EQ(told_by(2.3).warnings, 0);
+  const Told told = told_by(2.5);
+  EXPECT_EQ(told.warnings, 1);
+  EXPECT_NEAR(told.cells, 1.25, 0.05);    // points at the free ends are stretched a little more
+  EXPECT_EQ(told_by(1.9, "shape gimp").warnings, 0);
+  EXPECT_EQ(told_by(2.1, "shape gimp").warnings, 1);
+  EXPECT_EQ(told_by(2.2, "shape cubic").warnings, 0);
+  EXPECT_EQ(told_by(2.4, "shape cubic").warnings, 1);
+}
+
+TEST(FractureWatch, LooksAlongAllAxes)
+{
+  for (const int axis : {1, 2}) {
+    const Told told = told_by(2.5, "", SOFT, 0.1, axis);
+    EXPECT_EQ(told.warnings, 1) << axis;
+    EXPECT_NEAR(told.cells, 1.25, 0.05) << axis;
+  }
+}
+
+TEST(FractureWatch, IsSilentWhereNothingBreaks)
+{
+  EXPECT_EQ(told_by(2.5, "apart ignore").warnings, 0);
+  for (const char *grid : {"frame total", "shape cpdi", "shape cpdi2"})
+    EXPECT_EQ(told_by(2.5, grid).warnings, 0) << grid;
+  // fluids and grains without cohesion part, and nearly molten metal: all its tension is pressure
+  for (const char *material :
+       {"eos linear 1e-4", "eos tait 1e-4 7 viscosity newtonian 1e-4", "drucker/prager 1e-4 0.3 30",
+        "eos linear 1e-4 strength j2 1e-4 1e-9"})
+    EXPECT_EQ(told_by(2.5, "", material).warnings, 0) << material;
+  EXPECT_EQ(told_by(0.35, "", SOFT, -0.1).warnings, 0);    // pressed together
+}
