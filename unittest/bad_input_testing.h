@@ -1,12 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_BAD_INPUT_TESTING_H
 #define MPM_BAD_INPUT_TESTING_H
 
-// Tests of mistakes in an input. A good scene with one change, in a LAMMPS instance of its own, must
-// give an error that explains the mistake. A timer kills a scene that would run forever. It counts
-// processor time, so that the tests also pass on a busy machine.
+// Tests of mistakes in an input. A good scene with one change, in a LAMMPS instance of its own,
+// must give an error that explains the mistake. A timer kills a scene that would run forever. It
+// counts processor time, so that the tests also pass on a busy machine.
 
 #include "mpm_lammps.h"
 #include "patterns.h"

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_BODY_TESTING_H
 #define MPM_BODY_TESTING_H
@@ -12,8 +12,8 @@
 
 namespace MPM_TEST {
 
-/** Sums over the initial volumes of all points: their volume, their center, and their second moments
- *  about the center. least: smallest volume of a point. */
+/** Sums over the initial volumes of all points: their volume, their center, and their second
+ *  moments about the center. least: smallest volume of a point. */
 struct Sum {
   double volume = 0.0, center[3] = {0.0, 0.0, 0.0}, second[3][3] = {{0.0}}, least = 1.0e300;
   int points = 0;
@@ -45,7 +45,8 @@ struct Sum {
     points = (int) scene.lmp->atom->natoms;
   }
 
-  /** Principal moments of inertia for unit density, if each point is a cube with this edge length. */
+  /** Principal moments of inertia for unit density, if each point is a cube with this edge
+   *  length. */
   std::array<double, 3> moments(double size) const
   {
     double I[3][3], values[3], vectors[3][3];

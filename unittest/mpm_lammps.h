@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_LAMMPS_TEST_H
 #define MPM_LAMMPS_TEST_H
@@ -53,6 +53,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace MPM_TEST {
@@ -64,7 +65,8 @@ using ::testing::ValuesIn;
 
 constexpr double PI = 3.14159265358979323846;
 
-/** A test of results that do not depend on the number of ranks. It is skipped on more than one rank. */
+/** A test of results that do not depend on the number of ranks. It is skipped on more than one
+ *  rank. */
 #define SERIAL_TEST(suite, name)                            \
   static void suite##_##name();                             \
   TEST(suite, name)                                         \
@@ -78,6 +80,17 @@ constexpr double PI = 3.14159265358979323846;
 #define PARAMETER_TEST(suite, name, type, ...)            \
   class suite : public ::testing::TestWithParam<type> {}; \
   INSTANTIATE_TEST_SUITE_P(All, suite, __VA_ARGS__);      \
+  TEST_P(suite, name)
+
+/** The same on one rank only. */
+#define SERIAL_PARAMETER_TEST(suite, name, type, ...)         \
+  class suite : public ::testing::TestWithParam<type> {       \
+    void SetUp() override                                     \
+    {                                                         \
+      if (nranks() > 1) GTEST_SKIP() << "one rank is enough"; \
+    }                                                         \
+  };                                                          \
+  INSTANTIATE_TEST_SUITE_P(All, suite, __VA_ARGS__);          \
   TEST_P(suite, name)
 
 inline int nranks(MPI_Comm comm = MPI_COMM_WORLD)
@@ -130,8 +143,8 @@ template <class T> std::vector<T> all_by_tag(const std::vector<T> &mine, MPI_Com
 }
 
 /** A file that is removed at the end of a test at the latest. All ranks wait when it is written and
- *  removed. Its name begins with the source file of the test and the number of ranks, since tests may
- *  run at the same time. */
+ *  removed. Its name begins with the source file of the test and the number of ranks, since tests
+ *  may run at the same time. */
 struct ScratchFile {
   const std::string name;
 
@@ -191,8 +204,17 @@ inline std::string replaced(std::string scene, const std::string &word, const st
   return scene;
 }
 
-/** The first lines of a scene: a box, and material points as atoms. faces: "f f f"; extent: "xlo xhi ylo
- *  yhi zlo zhi"; types: number of atom types; skin: of neighbor lists, 0: the default of LAMMPS. */
+/** The scene with the first word of each pair replaced by the second one, in this order. */
+inline std::string replaced(std::string scene,
+                            const std::vector<std::pair<std::string, std::string>> &changes)
+{
+  for (const auto &[word, text] : changes) scene = replaced(std::move(scene), word, text);
+  return scene;
+}
+
+/** The first lines of a scene: a box, and material points as atoms. faces: "f f f"; extent: "xlo
+ *  xhi ylo yhi zlo zhi"; types: number of atom types; skin: of neighbor lists, 0: the default of
+ *  LAMMPS. */
 inline std::string space(const std::string &units, const std::string &faces,
                          const std::string &extent, int types = 1, double skin = 0.0, int dim = 3)
 {
@@ -202,8 +224,8 @@ inline std::string space(const std::string &units, const std::string &faces,
       strprintf("region box block %s\ncreate_box %d box\n", extent.c_str(), types);
 }
 
-/** The same in 2d, periodic along z. faces: "f f"; extent: "xlo xhi ylo yhi", and zlo and zhi for another
- *  thickness than from -0.5 to 0.5. */
+/** The same in 2d, periodic along z. faces: "f f"; extent: "xlo xhi ylo yhi", and zlo and zhi for
+ *  another thickness than from -0.5 to 0.5. */
 inline std::string plane(const std::string &units, const std::string &faces, std::string extent,
                          int types = 1, double skin = 0.0)
 {
@@ -221,8 +243,9 @@ inline std::string box(int dim, const std::string &units, const std::string &fac
   return plane(units, faces.substr(0, 3), extent.substr(0, end), types, skin);
 }
 
-/** The usual next lines: a lattice, and one body of one material, in the region body (region "box": it
- *  fills the box). grid: node spacing and options of fix mpm. The IDs of the fixes are grid and m. */
+/** The usual next lines: a lattice, and one body of one material, in the region body (region "box":
+ *  it fills the box). grid: node spacing and options of fix mpm. The IDs of the fixes are grid and
+ *  m. */
 inline std::string body(const std::string &region, const std::string &material,
                         const std::string &grid = "1.0", const std::string &ppc = "2")
 {
@@ -232,13 +255,33 @@ inline std::string body(const std::string &region, const std::string &material,
       "fix m all mpm/material " + material + "\n";
 }
 
+/** The lines of a scene that a run which continues from its restart file gives again. more: other
+ *  commands that it gives. */
+inline std::string lines_again(const std::string &scene, std::vector<std::string> more = {})
+{
+  std::string found;
+  more.insert(more.end(),
+              {"neighbor", "comm_modify", "region", "variable", "compute", "fix", "thermo_style",
+               "timestep"});
+  for (std::size_t at = 0, end; at < scene.size(); at = end + 1) {
+    end = std::min(scene.find('\n', at), scene.size());
+    const std::string line = scene.substr(at, end - at);
+    for (const auto &word : more)
+      if (line.compare(0, word.size() + 1, word + " ") == 0 &&
+          line.compare(0, 11, "region box ") != 0)
+        found += line + "\n";
+  }
+  return found;
+}
+
 /** A body of points. region: arguments of the region command; region and group have its name.
  *  lattice: spacing and options of its fix mpm. */
 struct Body {
   std::string name, region, lattice = "";
 };
 
-/** Creates bodies of types 1, 2, .... sites: options of create_points, in which # stands for the type. */
+/** Creates bodies of types 1, 2, .... sites: options of create_points, in which # stands for the
+ *  type. */
 inline std::string bodies(const std::vector<Body> &all, const std::string &sites = "ppc 2")
 {
   std::string text;
@@ -251,8 +294,8 @@ inline std::string bodies(const std::vector<Body> &all, const std::string &sites
   return text;
 }
 
-/** Creates bodies of types 1, 2, ..., each in a field of its own, with the fixes F1, F2, .... lattice: for
- *  the bodies that have none. */
+/** Creates bodies of types 1, 2, ..., each in a field of its own, with the fixes F1, F2, ....
+ *  lattice: for the bodies that have none. */
 inline std::string fields(const std::vector<Body> &all, const std::string &lattice = "1.0")
 {
   std::string fixes;
@@ -298,7 +341,8 @@ class Scene {
     }
   }
 
-  /** Executes lines of input, and returns the message of their error on all ranks; empty: no error. */
+  /** Executes lines of input, and returns the message of their error on all ranks; empty: no
+   *  error. */
   std::string error(const std::string &text)
   {
     try {
@@ -377,10 +421,10 @@ class Scene {
 
   // the following members know only the points and nodes of this rank
 
-  /** Calls f after the forces of each step, also of step 0. Positions, velocities, and stresses belong
-   *  to that time. f may write a force to force[i], which is zero before; it acts in the next step.
-   *  every: calls f only at multiples of this number of steps (for output, not for forces).
-   *  Call this once, after the box is created. */
+  /** Calls f after the forces of each step, also of step 0. Positions, velocities, and stresses
+   *  belong to that time. f may write a force to force[i], which is zero before; it acts in the
+   *  next step. every: calls f only at multiples of this number of steps (for output, not for
+   *  forces). Call this once, after the box is created. */
   void each_step(std::function<void(double **force)> f, int every = 1)
   {
     callback = f;
@@ -465,8 +509,8 @@ class Scene {
   }
   /** Work of the walls on this rank. */
   double work_of_boundaries() { return field()->ledger.boundary; }
-  /** Switches off the cure of volumetric locking from the next run on. (A new fix mpm would lose the
-   *  reference configuration.) */
+  /** Switches off the cure of volumetric locking from the next run on. (A new fix mpm would lose
+   *  the reference configuration.) */
   void switch_locking_off()
   {
     const_cast<LAMMPS_NS::MPMFieldOptions &>(field()->options).locking =
@@ -518,9 +562,9 @@ class Scene {
   }
   const double *reference(int i) const { return references[lmp->atom->tag[i]].data(); }
 
-  /** Adds to L the change of the angular momentum in the last step that is due to moving points along
-   *  other velocities than their own, as musl and usavg do: the sum of m (x - reference) x v. The
-   *  references must be positions of the step before; they are replaced by the present ones.
+  /** Adds to L the change of the angular momentum in the last step that is due to moving points
+   *  along other velocities than their own, as musl and usavg do: the sum of m (x - reference) x v.
+   *  The references must be positions of the step before; they are replaced by the present ones.
    *  sums() without this change conserves what the transfer conserves. */
   void add_angular_momentum_of_motion(double *L)
   {
@@ -540,9 +584,9 @@ class Scene {
     for (int i = 0; i < n(); i++) f(x()[i], v()[i]);
   }
 
-  /** Conserved quantities of all atoms, or of the atoms of one type. The angular momentum L about the
-   *  origin includes the spins and the affine matrices of APIC (quadratic and cubic shapes), which are
-   *  NaN before the first run. */
+  /** Conserved quantities of all atoms, or of the atoms of one type. The angular momentum L about
+   *  the origin includes the spins and the affine matrices of APIC (quadratic and cubic shapes),
+   *  which are NaN before the first run. */
   struct Sums {
     double mass, x[3], p[3], L[3], kinetic;    ///< x: center of mass
   };
@@ -670,9 +714,9 @@ inline double measured(const std::string &what, double value)
   return value;
 }
 
-/** Largest difference between two sets of states. Each quantity is relative to its largest magnitude;
- *  the stress is relative to the given one if that is larger. It is 1e300 if there are no points, not
- *  the same number of them, or NaN. */
+/** Largest difference between two sets of states. Each quantity is relative to its largest
+ *  magnitude; the stress is relative to the given one if that is larger. It is 1e300 if there are
+ *  no points, not the same number of them, or NaN. */
 inline double difference(const std::vector<Scene::State> &a, const std::vector<Scene::State> &b,
                          double stress = 1.0e-300)
 {
@@ -721,8 +765,8 @@ struct OnRanks {
 struct Continued {
   Scene whole, again;
 
-  /** Runs the scene for before steps, writes a restart file, and runs for after steps. again: reads the
-   *  restart file, executes next, and runs for after steps. */
+  /** Runs the scene for before steps, writes a restart file, and runs for after steps. again: reads
+   *  the restart file, executes next, and runs for after steps. */
   Continued(const std::string &scene, int before, const std::string &next, int after)
   {
     const ScratchFile file("restart");
@@ -745,13 +789,13 @@ velocity two set -0.5 0.1 0.3
 timestep 0.05
 )";
 
-/** A scene on one rank, on all ranks, and continued from a restart file in the middle. Expects the first
- *  two to differ by less than the tolerance, and the last two to be equal to the last bit. */
+/** A scene on one rank, on all ranks, and continued from a restart file in the middle. Expects the
+ *  first two to differ by less than the tolerance, and the last two to be equal to the last bit. */
 struct Twins {
   Scene serial{MPI_COMM_SELF}, whole, again;
 
-  /** Runs the scene for before steps, writes a restart file, and runs for after steps. again: reads the
-   *  restart file, executes next, and runs for after steps. */
+  /** Runs the scene for before steps, writes a restart file, and runs for after steps. again: reads
+   *  the restart file, executes next, and runs for after steps. */
   Twins(const std::string &scene, int before, const std::string &next, int after, double tolerance)
   {
     const ScratchFile file("restart");
@@ -818,8 +862,8 @@ struct Mistake {
   std::string lines, message;
 };
 
-/** Expects each of these mistakes to be refused after a valid scene, each in an instance of its own.
- *  run: further lines of input. */
+/** Expects each of these mistakes to be refused after a valid scene, each in an instance of its
+ *  own. run: further lines of input. */
 inline void expect_refused(const std::string &scene, const std::vector<Mistake> &mistakes,
                            const std::string &run = "")
 {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_PATTERNS_H
 #define MPM_PATTERNS_H
@@ -8,7 +8,8 @@
 
 namespace MPM_TEST {
 
-/** Whether a regular expression matches a part of the text. (The header regex takes seconds to compile.) */
+/** Whether a regular expression matches a part of the text. (The header regex takes seconds to
+ *  compile.) */
 bool contains(const std::string &text, const std::string &pattern);
 
 }    // namespace MPM_TEST

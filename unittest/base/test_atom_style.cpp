@@ -1,12 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit input smoke ranks
 // mpi: 1 2 4
 // timeout: 900
 
-// Atom style mpm (what a point carries, and that it survives whatever LAMMPS does to atoms)
-// and the command create_points.
+// Atom style mpm (what LAMMPS does to atoms keeps what points carry), and create_points.
 
 #include "mpm_lammps.h"
 
@@ -70,13 +69,23 @@ static double total_volume(const std::vector<Point> &points)
   return sum;
 }
 
-// a box and the lattice of a fix mpm; the fix itself needs a material before a run, so tests that
-// run something remove it
+static void expect_undeformed(const Point &p)
+{
+  for (int c = 0; c < 9; c++) EXPECT_EQ(p.F[c], c % 4 == 0 ? 1.0 : 0.0);
+}
+
+static std::set<std::array<double, 3>> places(const std::vector<Point> &points)
+{
+  std::set<std::array<double, 3>> all;
+  for (const auto &p : points) all.insert({p.x[0], p.x[1], p.x[2]});
+  return all;
+}
+
+// a box and the lattice of a fix mpm; tests that run something remove this, as it needs a material
 static const std::string box3d = space("si", "f f f", "0 1 0 1 0 1", 3) + "fix grid all mpm 0.1\n";
 
 static const std::string box2d = plane("si", "f f", "0 1 0 1", 3);
 
-// ---------------------------------------------------------------- sampling of regions
 TEST(CreatePoints, BlockOfCells)
 {
   Scene scene(box3d + "region r block 0.2 0.8 0.2 0.5 0 0.1\ncreate_points 2 region r ppc 2");
@@ -98,7 +107,7 @@ TEST(CreatePoints, BlockOfCells)
     EXPECT_DOUBLE_EQ(p.volume0, 1.25e-4);
     EXPECT_EQ(p.volume, p.volume0);
     EXPECT_EQ(p.mass, 0.0);
-    for (int c = 0; c < 9; c++) EXPECT_EQ(p.F[c], c % 4 == 0 ? 1.0 : 0.0);
+    expect_undeformed(p);
     for (double s : p.stress) EXPECT_EQ(s, 0.0);
     for (double v : p.v) EXPECT_EQ(v, 0.0);
   }
@@ -144,12 +153,10 @@ TEST(CreatePoints, WhichLattice)
   scene.commands("create_points 1 region r ppc 1 fix fine");
   EXPECT_EQ(atoms(scene).size(), 8u);
 
-  for (const char *origin : {"0.05 0 0", "0 0.05 0", "0 0 0.05"}) {
-    Scene other(box3d + "fix fine all mpm 0.1 origin " + origin +
-                "\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3");
-    expect_error(other, "create_points 1 region r ppc 1",
+  for (const char *origin : {"0.05 0 0", "0 0.05 0", "0 0 0.05"})
+    expect_error(box3d + "fix fine all mpm 0.1 origin " + origin +
+                     "\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\ncreate_points 1 region r ppc 1",
                  "Fixes mpm grid and fine have different lattices");
-  }
 
   Scene same(box3d +
              "fix second all mpm 0.1\nregion r block 0.2 0.3 0.2 0.3 0.2 0.3\n"
@@ -223,8 +230,6 @@ TEST(CreatePoints, ReportsWhatItMade)
   }
 }
 
-// ---------------------------------------------------------------- the same on any number of ranks
-
 // two far spheres in one bounding box of more sites than a rank looks at in one go, with jitter
 static const char *const far_spheres =
     "unfix grid\nfix grid all mpm 0.02\nregion one sphere 0.13 0.13 0.13 0.1\nregion two sphere "
@@ -276,16 +281,13 @@ TEST(CreatePoints, BalancedBox)
 TEST(CreatePoints, SitesOnFaces)
 {
   for (const char *boundary : {"f f f", "p p p"}) {
-    Scene scene(std::string("units si\natom_style mpm\nboundary ") + boundary +
-                "\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
+    Scene scene(space("si", boundary, "0 1 0 1 0 1") +
                 "fix grid all mpm 0.125 origin 0.0625 -0.0625 0.0625\n"
                 "create_points 1 box ppc 1\nunfix grid");
     auto points = atoms(scene);
     ASSERT_EQ(points.size(), 512u) << boundary;
     EXPECT_EQ(total_volume(points), 1.0);
-    std::set<std::array<double, 3>> places;
-    for (const auto &p : points) places.insert({p.x[0], p.x[1], p.x[2]});
-    EXPECT_EQ(places.size(), 512u);
+    EXPECT_EQ(places(points).size(), 512u);
     for (const auto &p : points)
       for (double x : p.x) EXPECT_EQ(8.0 * x, std::floor(8.0 * x));
 
@@ -295,10 +297,9 @@ TEST(CreatePoints, SitesOnFaces)
   }
 
   // the upper faces of a fixed box are outside
-  Scene scene(box3d +
-              "unfix grid\nfix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
-              "region r block 0 1 0 1 0 1");
-  expect_error(scene, "create_points 1 region r ppc 1",
+  expect_error(box3d +
+                   "unfix grid\nfix grid all mpm 0.125 origin 0.0625 0.0625 0.0625\n"
+                   "region r block 0 1 0 1 0 1\ncreate_points 1 region r ppc 1",
                std::to_string(9 * 9 * 9 - 512) + " points would be outside");
 }
 
@@ -353,7 +354,6 @@ TEST(CreatePoints, PeriodicFaceRounding)
   EXPECT_EQ(atoms(scene).size(), 1000u);
 }
 
-// ---------------------------------------------------------------- jitter
 static std::vector<Point> jittered(const std::string &options, MPI_Comm comm = MPI_COMM_WORLD)
 {
   Scene scene(box3d + "create_points 1 box ppc 2 " + options, comm);
@@ -409,12 +409,10 @@ TEST(CreatePoints, JitterStaysInBox)
     for (double x : p.x) EXPECT_TRUE(x >= 0.0 && x < 1.0) << x;
 }
 
-// ---------------------------------------------------------------- overlap and outside
 TEST(CreatePoints, AbuttingRegions)
 {
   Scene scene(box3d +
               "region a block 0.1 0.5 0.1 0.6 0.1 0.4\nregion b block 0.5 0.9 0.1 0.6 0.1 0.4\n"
-              "region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
               "create_points 1 region a jitter 0.5 1\ncreate_points 2 region b jitter 0.5 1");
   auto two = atoms(scene);
   EXPECT_EQ(two.size(), 16u * 10 * 6);
@@ -423,10 +421,7 @@ TEST(CreatePoints, AbuttingRegions)
   Scene whole(box3d +
               "region ab block 0.1 0.9 0.1 0.6 0.1 0.4\n"
               "create_points 1 region ab jitter 0.5 1");
-  std::set<std::array<double, 3>> places, one;
-  for (const auto &p : two) places.insert({p.x[0], p.x[1], p.x[2]});
-  for (const auto &p : atoms(whole)) one.insert({p.x[0], p.x[1], p.x[2]});
-  EXPECT_TRUE(places == one);
+  EXPECT_TRUE(places(two) == places(atoms(whole)));
 }
 
 TEST(CreatePoints, Overlap)
@@ -514,7 +509,6 @@ TEST(CreatePoints, OutsideTheBox)
   EXPECT_EQ(atoms(scene).size(), 60u);
 }
 
-// ---------------------------------------------------------------- bad input
 TEST(CreatePoints, BadInput)
 {
   struct {
@@ -574,24 +568,16 @@ TEST(CreatePoints, BadInput)
 
 TEST(CreatePoints, BadSetting)
 {
-  Scene early;
-  expect_error(early, "atom_style mpm\ncreate_points 1 box",
-               "before the simulation box is defined");
-  Scene atomic;
-  EXPECT_THAT(atomic.error("atom_style mpm\natom_style atomic\nregion box block 0 1 0 1 0 1\n"
-                           "create_box 1 box\ncreate_points 1 box"),
+  const std::string unit = "region box block 0 1 0 1 0 1\ncreate_box 1 box\ncreate_points 1 box";
+  expect_error("atom_style mpm\ncreate_points 1 box", "before the simulation box is defined");
+  EXPECT_THAT(error_of("atom_style mpm\natom_style atomic\n" + unit),
               AllOf(HasSubstr("needs atom_style mpm"), HasSubstr("atom style is atomic")));
-  Scene tilted;
-  expect_error(tilted,
-               "atom_style mpm\nregion box prism 0 1 0 1 0 1 0.1 0 0\n"
+  expect_error("atom_style mpm\nregion box prism 0 1 0 1 0 1 0.1 0 0\n"
                "create_box 1 box\ncreate_points 1 box spacing 0.1",
                "orthogonal");
-  Scene gridless;
-  EXPECT_THAT(gridless.error("atom_style mpm\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
-                             "create_points 1 box ppc 2"),
+  EXPECT_THAT(error_of("atom_style mpm\n" + unit + " ppc 2"),
               AllOf(HasSubstr("define fix mpm first"), HasSubstr("create_points spacing")));
-  Scene flat(box2d);
-  expect_error(flat, "fix grid all mpm 0.1\ncreate_points 1 box ppc 2 2 2",
+  expect_error(box2d + "fix grid all mpm 0.1\ncreate_points 1 box ppc 2 2 2",
                "expects 1 or 2 numbers in a 2d simulation, not 3");
 }
 
@@ -607,7 +593,6 @@ TEST(AtomStyle, BadInput)
   scene.commands("atom_style mpm\natom_style hybrid sphere mpm\natom_style mpm");
 }
 
-// ---------------------------------------------------------------- what LAMMPS does to atoms
 static std::string moving_points(const std::string &style)
 {
   return "units lj\natom_style " + style + R"(
@@ -642,7 +627,7 @@ TEST(AtomStyle, NewAtoms)
     EXPECT_EQ(p.volume0, 0.0);
     EXPECT_EQ(p.volume, 0.0);
     EXPECT_TRUE(std::isfinite(p.v[0]));
-    for (int c = 0; c < 9; c++) EXPECT_EQ(p.F[c], c % 4 == 0 ? 1.0 : 0.0);
+    expect_undeformed(p);
   }
 
   // atoms become material points when they are given a volume
@@ -659,7 +644,7 @@ TEST(AtomStyle, MemoryPerPoint)
 {
   Scene scene(moving, MPI_COMM_SELF);
 
-  // LAMMPS's own 8 + ID + image flags + 3*24, ours 2*8 + 72 + 48, and a pointer for each row of x, v, f
+  // LAMMPS: 8 + ID + image flags + 3*24; ours: 2*8 + 72 + 48; a pointer for each row of x, v, f
   EXPECT_LE(scene.lmp->atom->avec->memory_usage() / scene.lmp->atom->nmax,
             216.0 + sizeof(tagint) + sizeof(imageint) + 24.0);
   EXPECT_EQ(scene.lmp->atom->avec->comm_x_only, 1);
@@ -742,9 +727,8 @@ TEST(AtomStyle, Replicate)
   EXPECT_EQ(atoms(scene).size(), after.size() + 16 * 4 * 2);
 }
 
-// The command makes another Atom object, and fix mpm goes on with the points of that one. Periodic copies
-// of a periodic system move as the original does. Without arrays of its own (pic, no history variables), or else
-// LAMMPS refuses the command.
+// The command makes another Atom object, and fix mpm goes on with the points of that one. Periodic
+// copies move as the original does. (pic, no history: LAMMPS refuses arrays of a fix.)
 TEST(AtomStyle, ReplicateBetweenRuns)
 {
   const std::string scene = space("lj", "p p p", "0 8 0 6 0 5") +
@@ -842,7 +826,6 @@ TEST(AtomStyle, PropertyAtom)
   expect_error(scene, "compute q all property/atom mpm_F14", "mpm_F14");
 }
 
-// ---------------------------------------------------------------- data files
 static const char *const header = R"(LAMMPS data file
 
 4 atoms
@@ -877,7 +860,7 @@ static void round_trip(Scene &scene)
     expect_close(after[k].radius, before[k].radius);
     for (int d = 0; d < 3; d++) EXPECT_EQ(after[k].x[d], before[k].x[d]);
     for (int d = 0; d < 3; d++) EXPECT_EQ(after[k].v[d], before[k].v[d]);
-    for (int c = 0; c < 9; c++) EXPECT_EQ(after[k].F[c], c % 4 == 0 ? 1.0 : 0.0);
+    expect_undeformed(after[k]);
     for (double s : after[k].stress) EXPECT_EQ(s, 0.0);
   }
 
@@ -904,8 +887,7 @@ TEST(DataFile, Columns)
   EXPECT_EQ(p[2].mass, 0.5);
   EXPECT_EQ(p[2].volume, 0.0);
   EXPECT_EQ(p[3].mass, 6.0);
-  for (const auto &point : p)
-    for (int c = 0; c < 9; c++) EXPECT_EQ(point.F[c], c % 4 == 0 ? 1.0 : 0.0);
+  for (const auto &point : p) expect_undeformed(point);
   round_trip(good);
 }
 

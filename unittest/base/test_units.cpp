@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit smoke
 
@@ -17,8 +17,7 @@ struct Result {
   double inconsistency;    // of mvv2e and 1/ftm2v
 };
 
-/** text with {number P} as a pressure, {number A} as force/mass, {number F} as a force, in the units of
- *  the instance. */
+/** {number P} as a pressure, {A} as force/mass, {F} as a force, in the units of the instance. */
 static std::string converted(const std::string &text, Force *force)
 {
   std::string out;
@@ -35,8 +34,7 @@ static std::string converted(const std::string &text, Force *force)
   return out;
 }
 
-/** A scene that has a compute e all mpm/energy, and fixes of style mpm/boundary and mpm/rigid whose
- *  forces are compared. */
+/** Runs a scene; forces of its fixes mpm/boundary and mpm/rigid are compared. */
 static Result simulate(const std::string &units, const std::string &scene)
 {
   Scene run("units " + units + "\n");
@@ -89,10 +87,10 @@ static void compare(const std::string &scene)
   }
 }
 
-static const std::string box3d = "boundary f f f\natom_style mpm\nneighbor 0.3 bin\n"
-                                 "region box block 0 8 0 8 0 8\ncreate_box 2 box\n";
-static const std::string box2d = "dimension 2\nboundary f f p\natom_style mpm\nneighbor 0.3 bin\n"
-                                 "region box block 0 8 0 8 -0.5 0.5\ncreate_box 2 box\n";
+// without units
+static const std::string box3d =
+    replaced(space("", "f f f", "0 8 0 8 0 8", 2, 0.3), "units \n", "");
+static const std::string box2d = replaced(plane("", "f f", "0 8 0 8", 2, 0.3), "units \n", "");
 static const std::string soft = "fix m all mpm/material density 1.5 neohookean {100 P} 0.3\n";
 
 /** A block on a lattice with these options. */
@@ -113,23 +111,18 @@ PARAMETER_TEST(Units, SameMotionInAllUnitStyles, std::string,
 }
 
 // the parts of fix mpm that convert units on their own
-class UnitsOfOptions : public ::testing::TestWithParam<const char *> {};
-
-TEST_P(UnitsOfOptions, SameMotionInAllUnitStyles)
+PARAMETER_TEST(UnitsOfOptions, SameMotionInAllUnitStyles, const char *,
+               Values("frame total", "frame total reference update 1.02",
+                      "transfer flip 1.0 scheme usf locking both",
+                      "shape linear transfer apic light 0.5", "transfer xpic 2",
+                      "shape cpdi transfer tpic", "every 3 transfer flip 0.99 edges modified"))
 {
   compare(block(GetParam()) + soft +
           "fix floor all mpm/boundary zlo slip\nfix g all gravity {0.5 A} vector 0.2 0 -1\n"
           "velocity all ramp vz 0.0 -1.0 z 0 4\n");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, UnitsOfOptions,
-                         ::testing::Values("frame total", "frame total reference update 1.02",
-                                           "transfer flip 1.0 scheme usf locking both",
-                                           "shape linear transfer apic light 0.5",
-                                           "transfer xpic 2", "shape cpdi transfer tpic",
-                                           "every 3 transfer flip 0.99 edges modified"));
-
-// density and modulus eight times as large: the same motion to the last bit, as factors of two are exact
+// density and modulus eight times as large: the same to the last bit, as factors of two are exact
 TEST_P(UnitsOfOptions, DensityAndModulusTogether)
 {
   std::vector<Scene::State> states[2];

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi input restart
 // mpi: 1 3
@@ -10,8 +10,6 @@
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-// ---------------------------------------------------------------------- head-on impact of two bars
 
 /** Bars of length 1 at a distance of 2.5 node spacings, each with speed 0.05; c = 10. */
 static const std::string bars = plane("si", "f p", "-0.3 2.6 0 0.08 -0.05 0.05", 2) +
@@ -34,9 +32,18 @@ variable p equal v_v1*mass(one)+v_v2*mass(two)
 static std::string two_bars(const std::string &options, const std::string &contact,
                             const std::string &rho2 = "1", const std::string &E2 = "100")
 {
-  std::string text = replaced(bars, "OPTIONS", options);
-  text = replaced(replaced(text, "RHO2", rho2), "E2", E2);
-  return replaced(text, "CONTACT", contact);
+  return replaced(bars, {{"OPTIONS", options}, {"RHO2", rho2}, {"E2", E2}, {"CONTACT", contact}});
+}
+
+/** The same bars side by side, with these velocities. */
+static std::string touching_bars(const std::string &options, const std::string &contact,
+                                 const std::string &one, const std::string &two,
+                                 const std::string &rho2 = "1", const std::string &E2 = "100")
+{
+  return replaced(two_bars(options, contact, rho2, E2),
+                  {{"block 1.05 2.05", "block 1 2"},
+                   {"one set 0.05 0 0", "one set " + one},
+                   {"two set -0.05 0 0", "two set " + two}});
 }
 
 // A3(a): interface stress rho c v, contact for 2 L/c, rebound with the same speed; momentum exact
@@ -53,17 +60,10 @@ SERIAL_TEST(Contact, EqualBars)
       run.commands("run 50 post no\n");
       const double t = run.evaluate("time"), f = run.evaluate("f_c[1][1]") / 0.08;
       worst = std::max(worst, std::fabs(run.evaluate("v_p")));
-      if (f > 0.05) {
-        if (first < 0.0) {
-          first = t;
-          touch = run.evaluate("v_gap");
-        }
-        last = t;
-        if (t > 0.53 && t < 0.67) {
-          mean += f;
-          n++;
-        }
-      }
+      if (f <= 0.05) continue;
+      if (first < 0.0) first = t, touch = run.evaluate("v_gap");
+      last = t;
+      if (t > 0.53 && t < 0.67) mean += f, n++;
     }
     EXPECT_LT(worst, 1e-13 * 0.08 * 0.05);
     EXPECT_NEAR(first, 0.5, 0.011);
@@ -98,17 +98,14 @@ SERIAL_TEST(Contact, TouchingIsNotAMatterOfRounding)
     }
 }
 
-// bodies that slide along each other without any approach are free of each other, whatever rounding makes
-// of the velocity across: moved along the interface, or with another common velocity, they still are
+// bodies that slide along each other without any approach are free of each other, whatever rounding
+// makes of the velocity across, and with any common velocity
 SERIAL_TEST(Contact, SlidingIsNotAMatterOfRounding)
 {
-  const std::string scene =
-      replaced(replaced(replaced(two_bars("transfer apic scheme musl", "law stick"),
-                                 "block 1.05 2.05", "block 1 2"),
-                        "velocity one set 0.05 0 0", "velocity one set VX 0.5 0"),
-               "velocity two set -0.05 0 0", "velocity two set VX -0.1 0");
   for (const double speed : {0.0, 0.1, 0.3, 0.7}) {
-    Scene run(replaced(scene, "VX", strprintf("%.17g", speed)) + "run 6\n");
+    Scene run(touching_bars("transfer apic scheme musl", "law stick",
+                            strprintf("%.17g 0.5 0", speed), strprintf("%.17g -0.1 0", speed)) +
+              "run 6\n");
     EXPECT_NEAR(run.evaluate("vcm(one,y)"), 0.5, 1.0e-12) << speed;
     EXPECT_EQ(run.evaluate("f_c[1][4]"), 0.0) << speed;
   }
@@ -118,10 +115,7 @@ SERIAL_TEST(Contact, SlidingIsNotAMatterOfRounding)
 SERIAL_TEST(Contact, DoesNotPull)
 {
   for (const char *contact : {"", "law coulomb 0.3", "law stick", "gap no"}) {
-    std::string scene =
-        replaced(two_bars("transfer apic", contact), "block 1.05 2.05", "block 1 2");
-    scene = replaced(scene, "one set 0.05 0 0", "one set -0.05 0 0");
-    Scene run(replaced(scene, "two set -0.05 0 0", "two set 0.05 0.02 0") + "run 1\n");
+    Scene run(touching_bars("transfer apic", contact, "-0.05 0 0", "0.05 0.02 0") + "run 1\n");
     EXPECT_EQ(run.evaluate("f_c[1][1]"), 0.0) << contact;
     EXPECT_EQ(run.evaluate("f_c[1][4]"), 0.0) << contact;
     EXPECT_NEAR(run.evaluate("v_v1"), -0.05, 1e-13) << contact;
@@ -142,8 +136,8 @@ SERIAL_TEST(Contact, WithoutTheGapRuleContactIsEarly)
   EXPECT_LT(touch, 2.5);
 }
 
-// between walls without friction, half of the volume of the nodes at a wall is outside: bars touch there
-// as they do where they are continued periodically
+// between walls without friction, half of the volume of the nodes at a wall is outside: bars touch
+// there as they do where they are continued periodically
 SERIAL_TEST(Contact, BarsBetweenWalls)
 {
   LONG_CASE();
@@ -166,7 +160,7 @@ SERIAL_TEST(Contact, BarsBetweenWalls)
   }
 }
 
-// A3(c): Z = 10 and 40: stress Z1 Z2/(Z1 + Z2) (v1 - v2), interface velocity (Z1 v1 + Z2 v2)/(Z1 + Z2)
+// A3(c): Z = 10 and 40: stress Z1 Z2/(Z1 + Z2) (v1 - v2)
 SERIAL_TEST(Contact, DifferentImpedances)
 {
   Scene run(two_bars("transfer flip 1.0 scheme musl", "", "4", "400"));
@@ -175,16 +169,11 @@ SERIAL_TEST(Contact, DifferentImpedances)
   for (int k = 0; k < 66; k++) {
     run.commands("run 50 post no\n");
     const double t = run.evaluate("time");
-    if (t > 0.54 && t < 0.66) {
-      mean += run.evaluate("f_c[1][1]") / 0.08;
-      n++;
-    }
+    if (t > 0.54 && t < 0.66) mean += run.evaluate("f_c[1][1]") / 0.08, n++;
   }
   ASSERT_GT(n, 5);
   EXPECT_NEAR(mean / n, 10.0 * 40.0 / 50.0 * 0.1, 0.02 * 0.8);
 }
-
-// ---------------------------------------------------------------------- friction
 
 /** A block or a disk on a plane, gravity tilted by 30 degrees; F2 of the literature. */
 static const std::string incline = plane("si", "f f", "0 3 0 2 -0.05 0.05", 2) +
@@ -206,11 +195,14 @@ variable v equal vcm(body,x)
 static std::string on_incline(const std::string &body, const std::string &spacing,
                               const std::string &transfer, double mu)
 {
-  std::string text = replaced(replaced(incline, "BODY", body), "SPACING", spacing);
-  return replaced(replaced(text, "TRANSFER", transfer), "FRICTION", std::to_string(mu));
+  return replaced(incline,
+                  {{"BODY", body},
+                   {"SPACING", spacing},
+                   {"TRANSFER", transfer},
+                   {"FRICTION", std::to_string(mu)}});
 }
 
-/** The scene when the block has settled on the plane, damped and stuck, and is let go with this friction. */
+/** The block has settled on the plane, damped and stuck, and is let go with this friction. */
 static std::string settled(const std::string &transfer, const std::string &friction)
 {
   return on_incline("block 0.5 1.5 0.5 1.0 -0.05 0.05", "0.1", transfer, 0.0) +
@@ -238,8 +230,7 @@ struct Slide {
   }
 };
 
-// The block settles on the plane, damped and stuck; then it is let go, with friction from zero across the
-// limit of sticking, tan(30 degrees) = 0.577. Its elasticity makes it jump a little at first
+// With friction from zero across the limit of sticking, tan(30 degrees) = 0.577
 SERIAL_TEST(Friction, BlockSlidesOrSticks)
 {
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
@@ -290,7 +281,7 @@ velocity two set 0.5 0 0
 timestep 0.01
 )";
 
-// A block that slides without friction on a plane at an angle to the lattice: what the normals are worth.
+// A block slides without friction on a plane at an angle to the lattice: what normals are worth.
 static const std::string tilted = plane("si", "f f", "0 4 0 3 -0.05 0.05", 2) + R"(
 variable s equal sin(ANGLE*PI/180)
 variable c equal cos(ANGLE*PI/180)
@@ -316,7 +307,7 @@ SERIAL_TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
   for (const int angle : {20, 35}) {
     double others = 1.0;    // the better of the two
     for (const char *normal : {"colinear", "volume", "logistic"}) {
-      Scene run(replaced(replaced(tilted, "ANGLE", std::to_string(angle)), "NORMAL", normal));
+      Scene run(replaced(tilted, {{"ANGLE", std::to_string(angle)}, {"NORMAL", normal}}));
       const double exact = 9.81 * std::sin(angle * M_PI / 180.0) * run.evaluate("time");
       const double ratio =
           measured(std::to_string(angle) + " degrees, " + normal, run.evaluate("v_v") / exact);
@@ -334,17 +325,16 @@ SERIAL_TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
 
 TEST(Normals, LogisticRegressionIsTheSameOnAnyNumberOfRanks)
 {
-  OnRanks run(
-      replaced(replaced(replaced(tilted, "ANGLE", "20"), "NORMAL", "logistic"), "run 1400", ""),
-      "run 400\n");
+  OnRanks run(replaced(tilted, {{"ANGLE", "20"}, {"NORMAL", "logistic"}, {"run 1400", ""}}),
+              "run 400\n");
   EXPECT_LT(run.difference(), 1e-10);
   OnRanks periodic(replaced(disks, "coulomb 0.3", "coulomb 0.3 normal logistic"), "run 300\n");
   EXPECT_LT(periodic.difference(), 1e-10);
 }
 
-// The impulse at a node is along the sums over the points of both bodies of volume or mass times the
-// gradient of its function, or along the difference of their directions. Gradients are those of splines or,
-// with affine matrices, of moving least squares
+// The impulse at a node is along the sums over the points of both bodies of volume or mass times
+// the gradient of its function, or along the difference of their directions. Gradients are those of
+// splines or, with affine matrices, of moving least squares
 SERIAL_TEST(Normals, AreThoseOfVolumesOrMassesOrColinear)
 {
   const std::vector<std::string> kinds = {"colinear", "volume", "mass"};
@@ -409,11 +399,10 @@ fix c all mpm/contact F1 F2 gap no normal )" +
     }
 }
 
-// ---------------------------------------------------------------------- energy
-
-// One step of bodies without stress that touch and approach each other obliquely. A node with the reduced
-// mass m takes the impulses J_n = m u_n, and J_t = m times the sliding that friction stops; what is left of the
-// sliding u_t - J_t/m does the work of friction, and the inelastic collision costs (J_n^2 + J_t^2)/(2 m).
+// One step of bodies without stress that touch and approach each other obliquely. A node with the
+// reduced mass m takes the impulses J_n = m u_n, and J_t = m times the sliding that friction stops;
+// what is left of the sliding u_t - J_t/m does the work of friction, and the inelastic collision
+// costs (J_n^2 + J_t^2)/(2 m).
 TEST(Energy, OfACollision)
 {
   const double normal = 0.1, along = 0.05;    // relative velocity
@@ -423,10 +412,8 @@ TEST(Energy, OfACollision)
        {"transfer apic", "transfer flip 1.0", "transfer flip 1.0 scheme musl"})
     for (const auto &[law, stopped] : laws) {
       SCOPED_TRACE(std::string(options) + " " + law);
-      std::string scene =
-          replaced(two_bars(options, law, "4", "400"), "block 1.05 2.05", "block 1 2");
-      scene = replaced(scene, "one set 0.05 0 0", "one set 0.05 0.03 0");
-      Scene run(replaced(scene, "two set -0.05 0 0", "two set -0.05 -0.02 0") + "run 0\n");
+      Scene run(touching_bars(options, law, "0.05 0.03 0", "-0.05 -0.02 0", "4", "400") +
+                "run 0\n");
       const double start = run.compute_vector()[0];
       EXPECT_NEAR(start, 0.5 * 0.08 * (0.0025 + 0.0009) + 0.5 * 0.32 * (0.0025 + 0.0004), 1e-15);
       run.commands("run 1\n");
@@ -465,7 +452,6 @@ TEST(Energy, OfACollision)
     }
 }
 
-// ---------------------------------------------------------------------- three bodies at a node
 static const std::string corner = plane("lj", "p p", "0 16 0 16", 3) +
     fields({{"one", "block 2 8 2 8 -0.5 0.5"},
             {"two", "block 8 14 2 8 -0.5 0.5"},
@@ -517,15 +503,16 @@ TEST(ManyBodies, TellsWhatIsNotSolved)
   EXPECT_EQ(text.find(told, at + 1), std::string::npos);
 }
 
-// a plate of half a cell between two bars that close in on it: after contact no two of the three approach
-// each other, at any node, and their momentum is what it was
+// a plate of half a cell between two bars that close in on it: after contact no two of the three
+// approach each other, at any node, and their momentum is what it was
 SERIAL_TEST(ManyBodies, NoneApproaches)
 {
-  std::string scene = replaced(corner, "block 2 8 2 8", "block 2 8 0 16");
-  scene = replaced(scene, "block 8 14 2 8", "block 8.5 14 0 16");
-  scene = replaced(scene, "block 5 11 8 14", "block 8 8.5 0 16");
-  scene = replaced(scene, "FIELDS law coulomb 0.4", "F1 F2 F3 gap no");
-  scene = replaced(scene, "three set 0.1 -0.5 0", "three set 0.1 0.3 0");
+  const auto scene = replaced(corner,
+                              {{"block 2 8 2 8", "block 2 8 0 16"},
+                               {"block 8 14 2 8", "block 8.5 14 0 16"},
+                               {"block 5 11 8 14", "block 8 8.5 0 16"},
+                               {"FIELDS law coulomb 0.4", "F1 F2 F3 gap no"},
+                               {"three set 0.1 -0.5 0", "three set 0.1 0.3 0"}});
   const std::string material = "fix m all mpm/material density 1 neohookean 100 0.3\n";
   for (const double density : {1.0, 0.001}) {    // of the plate
     Scene run(
@@ -549,14 +536,9 @@ SERIAL_TEST(ManyBodies, NoneApproaches)
   }
 }
 
-// ---------------------------------------------------------------------- ranks, periodic faces, restart
-static const std::string fixes_of_disks = "fix F1 one mpm 0.5\nfix F2 two mpm 0.5\n"
-                                          "fix m all mpm/material density 1 neohookean 50 0.3\n"
-                                          "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
-
 TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
 {
-  Twins run(disks, 120, fixes_of_disks, 180, 1e-11);
+  Twins run(disks, 120, lines_again(disks), 180, 1e-11);
   run.serial.commands("variable v equal vcm(one,x)\n");
   EXPECT_GT(run.serial.evaluate("v_v"), -0.25);    // they have met through the face
   const double work = run.whole.evaluate("f_c");
@@ -564,14 +546,14 @@ TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
   EXPECT_NEAR(run.again.evaluate("f_c"), work, 1e-12 * std::fabs(work));
 }
 
-// the work that friction has done when the file is written is there again, once, on any number of ranks
+// the work of friction until the file is written is there again, once, on any number of ranks
 TEST(Restart, WorkOfFrictionGoesOn)
 {
   const ScratchFile file("restart");
   Scene whole(disks + "run 200\nwrite_restart " + file.name + "\n");
   const double work = whole.evaluate("f_c");
   EXPECT_LT(work, -1e-6);
-  const std::string next = "read_restart " + file.name + "\n" + fixes_of_disks + "run 0\n";
+  const std::string next = "read_restart " + file.name + "\n" + lines_again(disks) + "run 0\n";
   Scene again(next), serial(next, MPI_COMM_SELF);
   for (Scene *run : {&again, &serial}) {
     EXPECT_NEAR(run->evaluate("f_c"), work, 1e-14 * std::fabs(work));
@@ -587,19 +569,17 @@ TEST(Restart, WorkOfFrictionGoesOn)
 // Bodies that meet next to a wall: walls have the last word, wherever they are defined.
 SERIAL_TEST(Order, WallsActAfterContact)
 {
-  const std::string scene = replaced(replaced(disks, "region two cylinder z 20.9 5.3 2.5 INF INF",
-                                              "region two block 5.8 10 0 6 -0.5 0.5"),
-                                     "boundary p p p", "boundary p f p");
   const std::string contact = "fix c all mpm/contact F1 F2 law coulomb 0.3\n";
   const std::string wall = "fix w all mpm/boundary ylo slip\n";
-  std::string body = replaced(
-      replaced(scene, "cylinder z 3.1 6.2 2.5 INF INF", "block 2 5.6 0 5 -0.5 0.5"), contact, "");
-  body += "displace_atoms all ramp x 0 3 y 0 6 units box\n";    // an inclined interface
-  Scene before, after;
-  before.commands(body + contact + wall +
-                  "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n");
-  after.commands(body + wall + contact +
-                 "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n");
+  const std::string body =
+      replaced(disks,
+               {{"cylinder z 20.9 5.3 2.5 INF INF", "block 5.8 10 0 6 -0.5 0.5"},
+                {"boundary p p p", "boundary p f p"},
+                {"cylinder z 3.1 6.2 2.5 INF INF", "block 2 5.6 0 5 -0.5 0.5"},
+                {contact, ""}}) +
+      "displace_atoms all ramp x 0 3 y 0 6 units box\n";    // an inclined interface
+  const std::string go = "velocity one set 0.5 -0.1 0\nvelocity two set -0.5 -0.1 0\nrun 60\n";
+  Scene before(body + contact + wall + go), after(body + wall + contact + go);
   EXPECT_TRUE(identical(before.gather(), after.gather()));
   before.commands("variable v equal vcm(one,x)\n");
   EXPECT_LT(before.evaluate("v_v"), 0.3);    // they have met
@@ -634,8 +614,8 @@ TEST(Restart, RefusesAnotherNumberOfBodies)
         "was between F1 F2 when the restart file was written, not F2 F1"}});
 }
 
-// friction at rest may be larger: the block stays where it would slide with the other one, and slides with
-// that when it moves. (At the ends of the block the pull is a multiple of the mean.)
+// friction at rest may be larger: the block stays where it would slide with the other one, and
+// slides with that when it moves. (At the ends of the block the pull is a multiple of the mean.)
 SERIAL_TEST(Friction, StaticAndKinetic)
 {
   for (const double v : {0.0, 0.2}) {
@@ -650,12 +630,9 @@ SERIAL_TEST(Friction, StaticAndKinetic)
   }
 }
 
-// ---------------------------------------------------------------------- a body and itself
-
-// Two lobes of one field approach and slide, without an end across. They act on each other from where they
-// have nodes in common, two cells apart with quadratic functions, as if the material went on between
-// them: they do not touch, and do not slide freely. Two fields touch where they are, and do
-// slide
+// Two lobes of one field approach and slide, without an end across. They act on each other from
+// where they have nodes in common, two cells apart with quadratic functions, as if the material
+// went on between them, and do not slide freely. Two fields touch where they are, and slide
 static const std::string lobes = plane("lj", "p p", "0 16 0 4", 2) + R"(
 group one type 1
 group two type 2
@@ -701,25 +678,21 @@ SERIAL_TEST(SelfContact, LobesStick)
   EXPECT_NEAR(slide[1], 1.0, 1e-6);
 }
 
-// ---------------------------------------------------------------------- adhesion
-
-// two bars that touch: the left end of one is held, the right end of the other, and all of it at the start,
-// has the given velocity
+// two bars that touch: the left end of one is held, the other one has the given velocity
 static std::string drawn_bars(const std::string &law, const std::string &velocity)
 {
-  std::string text = two_bars("transfer apic", law);
-  text = replaced(text, "block 1.05 2.05", "block 1.0 2.0");
-  text = replaced(text, "velocity one set 0.05 0 0",
-                  "region left block -1 0.1 0 0.08 -0.05 0.05\n"
-                  "fix hold all mpm/boundary region left stick field F1");
-  return replaced(text, "velocity two set -0.05 0 0",
-                  "region right block 1.9 3 0 0.08 -0.05 0.05\n"
-                  "fix pull all mpm/boundary region right stick velocity " +
-                      velocity + " field F2\nvelocity two set " + velocity);
+  return replaced(two_bars("transfer apic", law),
+                  {{"block 1.05 2.05", "block 1.0 2.0"},
+                   {"velocity one set 0.05 0 0",
+                    "region left block -1 0.1 0 0.08 -0.05 0.05\n"
+                    "fix hold all mpm/boundary region left stick field F1"},
+                   {"velocity two set -0.05 0 0",
+                    "region right block 1.9 3 0 0.08 -0.05 0.05\n"
+                    "fix pull all mpm/boundary region right stick velocity " +
+                        velocity + " field F2\nvelocity two set " + velocity}});
 }
 
-// a bar is drawn off another one that is held: the pull reaches strength times area, the work is
-// the work of release times area
+// a bar is drawn off one that is held: pull is strength times area, work that of release times area
 SERIAL_TEST(Adhesion, StrengthAndWork)
 {
   Scene run(drawn_bars("law adhesive 0.02 1.0 2e-4 gap yes", "0.02 0 0"));
@@ -750,7 +723,6 @@ SERIAL_TEST(Adhesion, Shear)
   EXPECT_LT(run.evaluate("f_c"), 0.0);
 }
 
-// ---------------------------------------------------------------------- input that cannot work
 TEST(BadInput, IsRefused)
 {
   const std::string scene = replaced(disks, "fix c all mpm/contact F1 F2 law coulomb 0.3\n", "");

@@ -1,30 +1,22 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 300
 
-// A stress wave meets the interface of two bars that touch (fix mpm/contact): of a compressive pulse,
-// the share T = 2 Z2/(Z1 + Z2) of the stress goes on, R = (Z2 - Z1)/(Z1 + Z2) returns, with the
-// impedances Z = rho c; tension does not pass.
+// A stress wave meets the interface of two bars that touch (fix mpm/contact): of a compressive
+// pulse, the share T = 2 Z2/(Z1 + Z2) of the stress goes on, R = (Z2 - Z1)/(Z1 + Z2) returns, with
+// the impedances Z = rho c; tension does not pass.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
 
-// both bars have the length 1 and the speed of waves 10; Z1 = 10. A pulse of stress p sin^2(pi t/tau) at
-// the left end is 0.3 long.
+// both bars have the length 1, c = 10; Z1 = 10. A pulse p sin^2(pi t/tau) is 0.3 long.
 static constexpr double PULSE = 0.03, WIDTH = 0.16;
 
-static const std::string bars = R"(
-units si
-dimension 2
-boundary f p p
-atom_style mpm
-neighbor $(0.5*v_h) bin
-region box block -0.5 2.9 0 0.16 -0.05 0.05
-create_box 2 box
-)" +
+static const std::string bars = plane("si", "f p", "-0.5 2.9 0 0.16 -0.05 0.05", 2) +
+    "neighbor $(0.5*v_h) bin\n" +
     fields({{"one", "block 0 1 0 0.16 -0.05 0.05"}, {"two", "block 1 2 0 0.16 -0.05 0.05"}},
            "${h} OPTIONS") +
     R"(
@@ -45,7 +37,7 @@ struct Bars {
   Bars(double h, const std::string &options, double ratio, double p)
   {
     run.commands(strprintf("variable h equal %g\n", h) +
-                 replaced(replaced(bars, "RATIO", strprintf("%g", ratio)), "OPTIONS", options));
+                 replaced(bars, {{"RATIO", strprintf("%g", ratio)}, {"OPTIONS", options}}));
     run.set_reference();
     run.each_step([this, h, p](double **force) {
       const double dt = run.lmp->update->dt,
@@ -67,8 +59,8 @@ struct Bars {
   double gap() { return run.evaluate("v_gap"); }
 };
 
-// The pulse has 15 and 30 cells. Nodes that two bodies share have an error of their own, which falls
-// with more than the first power of the spacing
+// The pulse has 15 and 30 cells. Nodes that two bodies share have an error of their own, which
+// falls with more than the first power of the spacing
 class Waves : public ::testing::TestWithParam<const char *> {};
 
 TEST_P(Waves, CompressionPasses)
@@ -99,8 +91,8 @@ TEST_P(Waves, CompressionPasses)
   }
 }
 
-// A compressive pulse comes back from the free end as tension, which parts the bars: the gap is twice the
-// displacement impulse/Z2 that a pulse carries. Tension from the first bar does not pass
+// A compressive pulse comes back from the free end as tension, which parts the bars: the gap is
+// twice the displacement impulse/Z2 that a pulse carries. Tension from the first bar does not pass
 TEST_P(Waves, TensionParts)
 {
   LONG_CASE();

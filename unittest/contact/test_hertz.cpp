@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 600
@@ -13,8 +13,8 @@
 
 using namespace MPM_TEST;
 
-/** An elastic block of width W (radius or edge) and depth D between walls without friction, except for
- *  its upper face, into which a rigid paraboloid of radius R is pressed. Modulus 1, density 1. */
+/** An elastic block of width W (radius or edge) and depth D between smooth walls; a rigid
+ *  paraboloid of radius R is pressed into its upper face. Modulus 1, density 1. */
 struct Block {
   double nu, R, W, D;
 
@@ -27,8 +27,8 @@ struct Block {
   double peak(double a) const { return 2.0 / PI * plane_modulus() * a / R; }
 
   /** Pressure of wave number k, times what it has as amplitude of J0 or of cosines, to the
-   *  displacement of the surface: of a half-space 2/(E* k), of a layer on a floor without friction less
-   *  by the factor (cosh 2u - 1)/(sinh 2u + 2u), u = k D. */
+   *  displacement of the surface: of a half-space 2/(E* k), of a layer on a floor without friction
+   *  less by the factor (cosh 2u - 1)/(sinh 2u + 2u), u = k D. */
   double compliance(double k) const
   {
     const double u = std::min(k * D, 300.0);
@@ -43,8 +43,8 @@ struct Block {
   }
 
   // The indentation is the displacement of the surface at the center. That of a half-space would be
-  // a^2/R; walls and floor change it by a relative amount of the order of a/D, which these series have,
-  // but the shape of the surface, and with it force and pressure, by (a/D)^3 only.
+  // a^2/R; walls and floor change it by a relative amount of the order of a/D, which these series
+  // have, but the shape of the surface, and with it force and pressure, by (a/D)^3 only.
   double indentation_round(double a) const    // in a cylinder
   {
     double sum = force(a) * D / (PI * W * W * wave_modulus());
@@ -69,22 +69,21 @@ struct Block {
   }
 };
 
-/** Errors of a run at three radii of the contact: of the force relative to it, and of the radius in
- *  the same unit. */
+/** Errors at three radii of the contact: of the force relative to it, and of the radius. */
 struct Errors {
   double force[3], radius[3];
 };
 
 static constexpr double RADII[3] = {0.6, 0.8, 1.0};
 
-/** What a run has to tell: force on the paraboloid (of which there is a part only), contact radius. */
+/** What a run has to tell: force on the part of the paraboloid, radius of the contact. */
 struct Probe {
   int depth;    // axis along which it comes down
   double part;
   std::function<double(Scene &)> force, radius;
 };
 
-/** The paraboloid comes down at a constant speed, so slowly that waves cross the block many times. */
+/** The paraboloid comes down so slowly that waves cross the block many times. */
 static Errors press(Scene &run, const Block &block, double (Block::*indentation)(double) const,
                     const Probe &probe, double h, double transits)
 {
@@ -121,6 +120,19 @@ static Errors press(Scene &run, const Block &block, double (Block::*indentation)
   return errors;
 }
 
+static std::string with_map(const std::string &box)
+{
+  return replaced(box, "atom_style mpm\n",
+                  "atom_style mpm\natom_modify map array\nneighbor $(0.3*v_h) bin\n");
+}
+static const std::string materials = "fix m1 one mpm/material density 1.0 linear 1.0 0.3\n"
+                                     "fix m2 two mpm/material density 1.0e9 linear 1.0 0.3\n"
+                                     "timestep $(0.4*v_h/1.16)\n";
+static double contact_force(Scene &run)
+{
+  return run.evaluate("-f_c[1][2]");
+}
+
 // The exact solution itself: in a deep and wide block the indentation is that of a half-space, less
 // F a0/(pi E* D) for a wide layer, with a0 = 1.16757, the integral of 1 - L
 TEST(Hertz, SeriesHaveTheKnownLimits)
@@ -141,36 +153,18 @@ TEST(Hertz, OnOneLattice)
   for (int k = 0; k < 2; k++) {
     const double h = 0.25 / (1 << k);
     Scene run(
-        strprintf("variable h equal %g\n", h) + R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-atom_modify map array
-neighbor $(0.3*v_h) bin
-region box block 0 8 0 11 -0.5 0.5
-create_box 2 box
-)" +
+        strprintf("variable h equal %g\n", h) + with_map(plane("lj", "f f", "0 8 0 11", 2)) +
         fields({{"one", "block 0 8 0 8 INF INF"}, {"two", "block 0 2.5 8 $(8+3*v_h) INF INF"}},
                "${h} axisymmetric yes transfer flip 1.0 scheme musl") +
-        R"(
-fix m1 one mpm/material density 1.0 linear 1.0 0.3
-fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
-fix axis all mpm/boundary xlo xhi ylo slip
-fix c all mpm/contact F2 F1
-timestep $(0.4*v_h/1.16)
-)");
-    // The stress of single points is uneven down to some cells below the contact, its mean over four
-    // layers is not. At depth z the mean of r^2 with the stress as weight is 2/5 a^2 + 2 z^2, of
-    // which 3 z^3/s is beyond the radius s, with a share (z/s)^3 of the force
+        materials + "fix axis all mpm/boundary xlo xhi ylo slip\nfix c all mpm/contact F2 F1\n");
+    // The stress of single points is uneven down to some cells below the contact, its mean over
+    // four layers is not. At depth z the mean of r^2 with the stress as weight is 2/5 a^2 + 2 z^2,
+    // of which 3 z^3/s is beyond the radius s, with a share (z/s)^3 of the force
     std::vector<std::pair<tagint, double>> layers;
     for (int i = 0; i < run.n(); i++) {
       const double z = 8.0 - run.x()[i][1];
       if (z > h && z < 3.0 * h) layers.emplace_back(run.lmp->atom->tag[i], z);
     }
-    const auto force = [](Scene &r) {
-      return r.evaluate("-f_c[1][2]");
-    };
     const auto radius = [&](Scene &r) {
       const double s = 4.0;
       double force = 0.0, first = 0.0, part = 0.0, square = 0.0;
@@ -180,15 +174,14 @@ timestep $(0.4*v_h/1.16)
         const int i = r.lmp->atom->map(tag);
         const double x = r.x()[i][0];
         if (x > s) continue;
-        double stress[6];
-        r.points().cauchy(i, stress);
+        const auto stress = r.stress(i);
         force -= stress[1] * x;
         first -= stress[1] * x * x * x;
       }
       const double second = first / force * part - square;
       return std::sqrt(std::max(0.0, 2.5 * second / layers.size()));
     };
-    const Probe probe = {1, 1.0, force, radius};
+    const Probe probe = {1, 1.0, contact_force, radius};
     error[k] = press(run, block, &Block::indentation_round, probe, h, 15.0);
   }
   for (int n = 0; n < 3; n++) {
@@ -200,8 +193,7 @@ timestep $(0.4*v_h/1.16)
   EXPECT_LT(error[1].force[2], 0.01);
 }
 
-// The same with a block of twenty radii of the contact (benchmark U3), on four lattices (fix mpm/refine), of which the finest has the
-// contact
+// A block of twenty radii of the contact (U3) on four lattices (fix mpm/refine)
 TEST(Hertz, OnSeveralLattices)
 {
   LONG_CASE();
@@ -234,67 +226,39 @@ TEST(Hertz, OnSeveralLattices)
                     "fix T\ngroup two type 2\n",
                     20.0 + 3.0 * h);
     }
-    Scene run(strprintf("variable h equal %g\n", h) + R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-atom_modify map array
-neighbor $(0.3*v_h) bin
-region box block 0 20 0 23 -0.5 0.5
-create_box 5 box
-)" + lattices +
-              "fix block all mpm/refine" + all + "\n" + points + R"(
-group one subtract all two
-fix m1 one mpm/material density 1.0 linear 1.0 0.3
-fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
-fix axis all mpm/boundary xlo xhi ylo slip
-fix c all mpm/contact T F3
-timestep $(0.4*v_h/1.16)
-)");
-    const auto force = [](Scene &r) {
-      return r.evaluate("-f_c[1][2]");
-    };
+    Scene run(strprintf("variable h equal %g\n", h) + with_map(plane("lj", "f f", "0 20 0 23", 5)) +
+              lattices + "fix block all mpm/refine" + all + "\n" + points +
+              "group one subtract all two\n" + materials +
+              "fix axis all mpm/boundary xlo xhi ylo slip\nfix c all mpm/contact T F3\n");
     const auto none = [](Scene &) {
       return 0.0;
     };
-    const Probe probe = {1, 1.0, force, none};
+    const Probe probe = {1, 1.0, contact_force, none};
     error[k] = press(run, block, &Block::indentation_round, probe, h, 8.0);
   }
   for (int n = 0; n < 3; n++) EXPECT_LT(error[1].force[n], 0.5 * error[0].force[n]);
   EXPECT_LT(error[1].force[2], 0.03);    // eight cells in the radius
 }
 
-// in three dimensions, on two lattices: a quarter. Spheres of points touch late where they face gaps of
-// the other lattice, and the layer of contact yields: the force is too small by what both are of the
-// indentation, which is of first order in the spacing of points
+// in three dimensions, on two lattices: a quarter. Spheres of points touch late where they face
+// gaps of the other lattice, and the layer of contact yields: the force is too small by what both
+// are of the indentation, which is of first order in the spacing of points
 TEST(Hertz, OnTwoLattices)
 {
   const Block block = {0.3, 4.0, 4.0, 4.0};
   Errors error[2];
   for (int k = 0; k < 2; k++) {
     const double h = k ? 0.2 : 1.0 / 3.0;
-    Scene run(strprintf("variable h equal %.17g\n", h) + R"(
-units lj
-boundary f f f
-atom_style mpm
-atom_modify map array
-neighbor $(0.3*v_h) bin
-region box block 0 4 0 4 0 7
-create_box 2 box
-)" +
+    Scene run(strprintf("variable h equal %.17g\n", h) +
+              with_map(space("lj", "f f f", "0 4 0 4 0 7", 2)) +
               fields({{"one", "block 0 4 0 4 0 4", "${h} transfer flip 1.0 scheme musl"},
                       {"two", "block 0 1.6 0 1.6 4 $(4+2.4*v_h)",
                        "$(0.8*v_h) origin 0 0 4 transfer flip 1.0 scheme musl"}}) +
-              R"(
-fix m1 one mpm/material density 1.0 linear 1.0 0.3
-fix m2 two mpm/material density 1.0e9 linear 1.0 0.3
-fix sides all mpm/boundary xlo xhi ylo yhi zlo slip
+              materials + R"(fix sides all mpm/boundary xlo xhi ylo yhi zlo slip
 pair_style mpm/penalty
 pair_coeff 1 2 1.0
 compute f two reduce sum fz
 thermo_style custom step c_f
-timestep $(0.4*v_h/1.16)
 )");
     // forces on the points of the paraboloid: the mean of r^2 is 2/5 a^2
     const auto force = [](Scene &r) {

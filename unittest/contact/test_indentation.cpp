@@ -1,18 +1,16 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
 
-// Hard tools in a metal without hardening (fix mpm/contact): a cone and a sphere go in, as bodies of
-// revolution, against published finite elements and the plastic limit; a cone is drawn along (examples/scratch), as a
-// body and as a region that moves (fix mpm/boundary separate).
-// The elastic limit, Hertz, is in test_hertz.cpp.
+// Hard tools in a metal without hardening (fix mpm/contact): a cone and a sphere go in, as bodies
+// of revolution, against published finite elements and the plastic limit; a cone is drawn along
+// (examples/scratch), as a body and as a region that moves (fix mpm/boundary separate). The elastic
+// limit, Hertz, is in test_hertz.cpp.
 
 #include "mesh/stl_testing.h"
 #include "mpm_lammps.h"
-
-#include <map>
 
 using namespace MPM_TEST;
 
@@ -31,12 +29,9 @@ static std::string metal(double E)
                    E / 2.0 / (1.0 + NU));
 }
 
-/* ----------------------------------------------------------------------
-   A block of 16 x 16 between walls without friction, and a tool with the given shape of its lower face,
-   which goes in by the depth within so many transits of waves. The force is the mean over 1 % of that.
-   The tool is a body, or, if one is given, a region with this face (fix mpm/boundary).
-------------------------------------------------------------------------- */
-
+// A block of 16 x 16 between walls without friction, and a tool with the given shape of its lower
+// face, which goes in by the depth within so many transits of waves. The force is the mean over 1 %
+// of that. The tool is a body, or, if one is given, a region with this face (fix mpm/boundary).
 struct Indentation {
   std::vector<double> depth, force;
   std::vector<std::array<double, 2>> surface;    // of the block at the end: r, and z of its points
@@ -58,17 +53,10 @@ static Indentation press(const std::function<double(double)> &shape, double E, d
       strprintf("variable y equal %.17g*time\nregion tool %s move NULL v_y NULL\n", -end / time,
                 region.c_str()) +
       "fix w all mpm/boundary region tool separate\nvariable f equal f_w[2]\n";
-  Scene run(strprintf("variable h equal %.17g\n", h) + R"(
-units lj
-dimension 2
-boundary f f p
-atom_style mpm
-atom_modify map array
-neighbor $(0.5*v_h) bin
-region box block 0 16 -16 4 -0.5 0.5
-create_box 2 box
-)" + (region.empty() ? body : wall) +
-            "fix m1 one mpm/material " + metal(E) + "\n" +
+  Scene run(strprintf("variable h equal %.17g\n", h) +
+            replaced(plane("lj", "f f", "0 16 -16 4", 2), "atom_style mpm\n",
+                     "atom_style mpm\natom_modify map array\nneighbor $(0.5*v_h) bin\n") +
+            (region.empty() ? body : wall) + "fix m1 one mpm/material " + metal(E) + "\n" +
             "fix sides all mpm/boundary xlo xhi ylo slip\n" + strprintf("timestep %.17g\n", dt));
   std::vector<tagint> top;
   for (int i = 0; i < run.n(); i++) {
@@ -76,9 +64,8 @@ create_box 2 box
     if (run.lmp->atom->type[i] == 2) {
       x[1] += shape(x[0]);
       run.v()[i][1] = -end / time;
-    } else if (x[1] > -0.4 * h) {
+    } else if (x[1] > -0.4 * h)
       top.push_back(run.lmp->atom->tag[i]);
-    }
   }
   Indentation result;
   run.commands(strprintf("fix mean all ave/time 1 %d %d v_f\n", steps, steps));
@@ -95,13 +82,11 @@ create_box 2 box
   return result;
 }
 
-/* ----------------------------------------------------------------------
-   F = C d^2. Finite elements of cones of 70.3 degrees (M. Dao et al., Acta Mater. 49, 3899 (2001), eq. 7, which
-   has them within some per cent): C/Y is a polynomial in ln(E* /Y), 87.2 for E/Y = 250; with a hardness
-   of 2.7 Y (M. Mata et al., J. Mater. Res. 17, 964 (2002)) this is a contact 1.19 times as wide as the
-   cone at the old surface. Bodies touch at 0.1 node spacings too late: sqrt(F) = sqrt(C) (d - 0.1 h)
-------------------------------------------------------------------------- */
-
+// F = C d^2. Finite elements of cones of 70.3 degrees (M. Dao et al., Acta Mater. 49, 3899 (2001),
+// eq. 7, which has them within some per cent): C/Y is a polynomial in ln(E* /Y), 87.2 for E/Y =
+// 250; with a hardness of 2.7 Y (M. Mata et al., J. Mater. Res. 17, 964 (2002)) this is a contact
+// 1.19 times as wide as the cone at the old surface. Bodies touch at 0.1 node spacings too late:
+// sqrt(F) = sqrt(C) (d - 0.1 h)
 static double cone(double r)
 {
   return SLOPE * r;
@@ -151,12 +136,10 @@ TEST(Indentation, ConeThatIsAWall)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Full plasticity under a sphere: mean pressure of 2.8 (D. Tabor, The Hardness of Metals (1951)) to 3.0 Y (B.
-   Storakers, S. Biwa, P.-L. Larsson, Int. J. Solids Struct. 34, 3061 (1997)); E* a/(Y R) = 440. The contact
-   ends where points of the surface, half of their spacing (0.25 h) inside of it, are farther than that from the tool
-------------------------------------------------------------------------- */
-
+// Full plasticity under a sphere: mean pressure of 2.8 (D. Tabor, The Hardness of Metals (1951)) to
+// 3.0 Y (B. Storakers, S. Biwa, P.-L. Larsson, Int. J. Solids Struct. 34, 3061 (1997)); E* a/(Y R)
+// = 440. The contact ends where points of the surface, half of their spacing (0.25 h) inside of it,
+// are farther than that from the tool
 TEST(Indentation, SphereAtThePlasticLimit)
 {
   LONG_CASE();
@@ -187,13 +170,11 @@ TEST(Indentation, SphereAtThePlasticLimit)
   EXPECT_LT(gap, 0.25 * h);    // and there is no room left
 }
 
-/* ----------------------------------------------------------------------
-   Scratch: one half, a plane of symmetry. A frictionless cone that touches with its front half has tangential over
-   normal force 2/pi tan(beta) (0.228) in a rigid plastic body; friction adds mu (F.P. Bowden, D. Tabor, The
-   Friction and Lubrication of Solids (1950)). 20 %, as benchmarks of this kind ask: there is no material in
-   front in these formulas. The volume of the groove is that of the ridges, less what is compressed
-------------------------------------------------------------------------- */
-
+// Scratch: one half, a plane of symmetry. A frictionless cone that touches with its front half has
+// tangential over normal force 2/pi tan(beta) (0.228) in a rigid plastic body; friction adds mu
+// (F.P. Bowden, D. Tabor, The Friction and Lubrication of Solids (1950)). 20 %, as benchmarks of
+// this kind ask: there is no material in front in these formulas. The volume of the groove is that
+// of the ridges, less what is compressed
 struct Scratch {
   double normal, tangential;    // means over the second half of the way
   double groove, ridge;         // volumes below and above the old surface
@@ -201,8 +182,7 @@ struct Scratch {
   double compressed;            // at most: the block under a mean pressure of the yield stress
 };
 
-/** d, way: depth, and how far the tool is drawn, in depths. tool: its height at a distance from its axis; a: where that
- *  is d. */
+/** way: in depths d. tool: its height at a distance from its axis; a: where that is d. */
 static Scratch scratch(double mu, double d, double way, double a,
                        const std::function<double(double)> &tool)
 {
@@ -211,14 +191,10 @@ static Scratch scratch(double mu, double d, double way, double a,
   Scene run(
       strprintf("variable d equal %.17g\nvariable w equal %.17g\nvariable a equal %.17g\n", d, way,
                 a) +
-      R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.5 bin
-region box block 0 $(round(3.6*v_a+v_w*v_d)) 0 $(round(1.8*v_a)) -$(round(1.8*v_a)) $(round(3*v_d)+5)
-create_box 2 box
-)" +
+      space("lj", "f f f",
+            "0 $(round(3.6*v_a+v_w*v_d)) 0 $(round(1.8*v_a)) -$(round(1.8*v_a)) "
+            "$(round(3*v_d)+5)",
+            2, 0.5) +
       fields({{"one", "block INF INF INF INF INF 0"},
               {"two", strprintf("block %g %g 0 %g 0 3", first - reach, first + reach, reach)}},
              "1.0 scheme musl gain ignore apart ignore") +
@@ -294,13 +270,11 @@ TEST(Scratch, ConeInPlasticMetal)
   }
 }
 
-/* ----------------------------------------------------------------------
-   The same with a region as tool, which goes down by the depth and then along. All forces of the walls together are
-   what the momentum of the block tells. The force on any piece of the front of the cone is inclined by beta + atan(mu)
-   at most, whatever the pressure is. With the same pressure everywhere on the front half, and friction against
-   the way of the cone, there is a mean inclination, for which benchmarks of this kind ask 20 %
-------------------------------------------------------------------------- */
-
+// The same with a region as tool, which goes down by the depth and then along. All forces of the
+// walls together are what the momentum of the block tells. The force on any piece of the front of
+// the cone is inclined by beta + atan(mu) at most, whatever the pressure is. With the same pressure
+// everywhere on the front half, and friction against the way of the cone, there is a mean
+// inclination, for which benchmarks of this kind ask 20 %
 struct Drawn {
   double normal, tangential;    // means over the last quarter of the time
   double error;                 // of the balance of momentum, over the impulse of the tool
@@ -313,14 +287,11 @@ static Drawn draw(double mu, double d, double way, const std::string &file = "")
   const int steps = (int) std::ceil((1.0 + way) * d / v / dt / 4.0);
   const double tip = 0.02 * d;
   Scene run(
-      strprintf("variable d equal %.17g\nvariable w equal %.17g\n", d, way) + R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.5 bin
-region box block 0 $(round((8+v_w)*v_d)) 0 $(round(5*v_d)) -$(round(4*v_d)) $(round(2*v_d)+3)
-create_box 1 box
-)" + fields({{"one", "block INF INF INF INF INF 0"}}, "1.0 scheme musl apart ignore") +
+      strprintf("variable d equal %.17g\nvariable w equal %.17g\n", d, way) +
+      space("lj", "f f f",
+            "0 $(round((8+v_w)*v_d)) 0 $(round(5*v_d)) -$(round(4*v_d)) $(round(2*v_d)+3)", 1,
+            0.5) +
+      fields({{"one", "block INF INF INF INF INF 0"}}, "1.0 scheme musl apart ignore") +
       "fix m1 one mpm/material " + metal(E) + "\n" +
       strprintf("timestep %.17g\nvariable s equal %.17g*step*dt\n", dt, v) + R"(
 variable z equal -(v_s<v_d)*v_s-(v_s>=v_d)*v_d
@@ -362,7 +333,7 @@ run %d post no
   return drawn;
 }
 
-/** Tangential over normal force, from sums over the front of the cone: n is the part of its normal along the way. */
+/** Tangential over normal force; n: the part of the normal along the way. */
 static double ploughing(double mu)
 {
   const double beta = std::atan(SLOPE);
@@ -394,11 +365,8 @@ TEST(Scratch, RegionAsTool)
   }
 }
 
-/* ----------------------------------------------------------------------
-   A cone as an STL file, and as region of LAMMPS, which finds no distance on the axis of a cone: here a line of nodes.
-   The cone of 64 triangles is inside of the round one, by 0.12 % of its radius at the most
-------------------------------------------------------------------------- */
-
+// A cone as an STL file, and as region of LAMMPS, which finds no distance on the axis of a cone:
+// here a line of nodes. The cone of 64 triangles is smaller, by 0.12 % of its radius at most
 TEST(Scratch, ToolOfTriangles)
 {
   LONG_CASE();
@@ -420,12 +388,10 @@ TEST(Scratch, ToolOfTriangles)
   EXPECT_NEAR(measured("tangential force", triangles.tangential / round.tangential), 1.0, 0.01);
 }
 
-/* ----------------------------------------------------------------------
-   A frictionless sphere that touches a rigid plastic body with its front half, by a radius R sin(theta), has tangential
-   over normal force 2 (theta - sin cos)/(pi sin^2). 20 %, as the benchmark asks, with a radius of 0.4 R. With 0.6 R there is no steady
-   state: the sphere pushes a ridge in front of itself, and the ratio grows from 1.2 to more than twice that of the formula
-------------------------------------------------------------------------- */
-
+// A frictionless sphere that touches a rigid plastic body with its front half, by a radius R
+// sin(theta), has tangential over normal force 2 (theta - sin cos)/(pi sin^2). 20 %, as the
+// benchmark asks, with a radius of 0.4 R. With 0.6 R there is no steady state: the sphere pushes a
+// ridge in front of itself, and the ratio grows from 1.2 to more than twice that of the formula
 TEST(Scratch, SphereInPlasticMetal)
 {
   LONG_CASE();

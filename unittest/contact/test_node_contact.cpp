@@ -14,8 +14,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-namespace {
-
 struct Node {
   double a[4] = {0.0, 0.0, 0.0, 2.0}, b[4] = {0.0, 0.0, 0.0, 6.0};    // velocity and mass
   MPMNodeContact contact = {};
@@ -44,8 +42,6 @@ struct Node {
 };
 
 constexpr double MASS = 1.5;    // 2 * 6/(2 + 6)
-
-}    // namespace
 
 TEST(Coulomb, ReturnsToTheCone)
 {

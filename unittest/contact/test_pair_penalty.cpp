@@ -1,12 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi input restart
 // mpi: 1 3
 // timeout: 900
 
-// Contact between fields on different lattices through pair style mpm/penalty. Hertz contact is in
-// test_hertz.cpp.
+// Contact between fields on different lattices through pair style mpm/penalty (also test_hertz).
 
 #include "mpm_lammps.h"
 
@@ -14,8 +13,6 @@
 #include "neighbor.h"
 
 using namespace MPM_TEST;
-
-// ---------------------------------------------------------------------- head-on impact of two bars
 
 /** Bars of length 1 at a gap of 0.01, each with speed 0.05, with spacings 0.02 and 0.016. */
 static const std::string bars = plane("si", "f p", "-0.3 2.6 0 0.08 -0.05 0.05", 2, 0.01) +
@@ -42,8 +39,7 @@ thermo_style custom step c_e c_pair c_f
 static std::string two_bars(const std::string &modulus, const std::string &penalty,
                             const std::string &step)
 {
-  std::string text = replaced(replaced(bars, "MODULUS", modulus), "PENALTY", penalty);
-  return replaced(text, "STEP", step);
+  return replaced(bars, {{"MODULUS", modulus}, {"PENALTY", penalty}, {"STEP", step}});
 }
 
 // stress rho c v = 0.5 at the interface for 2 L/c = 0.2, then the bars part with their old speeds
@@ -101,14 +97,7 @@ SERIAL_TEST(Bars, DampingDissipates)
 // two points of volumes 1 and 0.8^3: radii 0.5 and 0.4, face of the smaller one 0.64
 SERIAL_TEST(TwoPoints, ForceEnergyAndPower)
 {
-  Scene run(R"(
-units lj
-boundary f f f
-atom_style mpm
-neighbor 0.3 bin
-comm_modify vel yes
-region box block 0 5 0 5 0 5
-create_box 2 box
+  Scene run(space("lj", "f f f", "0 5 0 5 0 5", 2) + R"(comm_modify vel yes
 create_atoms 1 single 2 2 2
 create_atoms 2 single 2.8 2 2
 set type 1 volume 1.0
@@ -139,8 +128,6 @@ run 0
   EXPECT_EQ(run.evaluate("c_f[1]"), 0.0);
   EXPECT_NEAR(run.evaluate("c_pair[2]"), 100.0 * force, 1e-10);
 }
-
-// ---------------------------------------------------------------------- friction
 
 /** A block on a plane of other spacing, gravity tilted by 30 degrees. */
 static const std::string incline = plane("si", "f f", "0 3 0 1.4 -0.05 0.05", 2, 0.03) +
@@ -181,7 +168,6 @@ SERIAL_TEST(Friction, BlockSlidesOrSticks)
   }
 }
 
-// ---------------------------------------------------------------------- ranks, periodic faces, restart
 static const std::string disks = plane("lj", "p p", "0 24 0 12", 2) +
     fields({{"one", "cylinder z 3.1 6.2 2.5 INF INF", "0.5"},
             {"two", "cylinder z 20.9 5.3 2.5 INF INF", "0.6"}}) +
@@ -202,8 +188,8 @@ compute esum all reduce sum c_e
 thermo_style custom step pe c_esum
 )";
 
-// without Newton's third law a pair of a point and an image of another is there twice, on one rank, too: it is one
-// contact, and its friction one work
+// without Newton's third law a pair of a point and an image of another is there twice, on one rank,
+// too: it is one contact, and its friction one work
 TEST(Parallel, PairsAcrossAPeriodicFaceCountOnce)
 {
   std::vector<std::array<double, 2>> told;
@@ -221,10 +207,7 @@ TEST(Parallel, PairsAcrossAPeriodicFaceCountOnce)
 
 TEST(Parallel, RanksAgreeAcrossAPeriodicFaceAndAfterARestart)
 {
-  Twins run(disks, 160,
-            "comm_modify vel yes\nfix F1 one mpm 0.5\nfix F2 two mpm 0.6\n"
-            "fix m all mpm/material density 1 neohookean 50 0.3\n",
-            140, 1e-10);
+  Twins run(disks, 160, lines_again(disks), 140, 1e-10);
   EXPECT_GT(run.again.evaluate("pe"), 0.0);
   OnRanks off("newton off\n" + disks, "run 300\n");
   EXPECT_LT(off.difference(), 1e-10);
@@ -242,8 +225,6 @@ TEST(Parallel, MomentumAndEnergyOfAtoms)
   EXPECT_NEAR(run.evaluate("v_px"), p[0], 1e-12);
   EXPECT_NEAR(run.evaluate("v_py"), p[1], 1e-12);
 }
-
-// ---------------------------------------------------------------------- who feels whom
 
 // types that two fields share, lists by collection, a hybrid: the contact is the same
 TEST(Lists, ContactDoesNotDependOnThem)
@@ -297,8 +278,8 @@ TEST(Lists, TotalFrame)
   for (int total = 0; total < 2; total++) {
     std::string text = replaced(disks, " friction 0.3 0.05 damping 0.1", "");
     if (total)
-      text = replaced(replaced(text, "mpm 0.5", "mpm 0.5 frame total"), "mpm 0.6",
-                      "mpm 0.6 frame total");
+      text =
+          replaced(text, {{"mpm 0.5", "mpm 0.5 frame total"}, {"mpm 0.6", "mpm 0.6 frame total"}});
     Scene run(text + "run 400\n");
     v[total] = run.evaluate("v_v");
     EXPECT_EQ(run.evaluate("pe"), 0.0);    // they have parted
@@ -310,16 +291,17 @@ TEST(Lists, TotalFrame)
 // a grain between two bodies: the granular style moves it, this one couples the bodies only
 TEST(Lists, GrainsNextToBodies)
 {
-  std::string text = replaced(disks, "atom_style mpm", "atom_style hybrid sphere mpm");
-  text = replaced(text, "create_box 2 box", "create_box 3 box");
-  text = replaced(text, "pair_style mpm/penalty growth 1.3\npair_coeff 1 2",
-                  "create_atoms 3 single 17.6 5.3 0\nset type 3 diameter 1 density 1\n"
-                  "group grain type 3\nvelocity grain set 1.5 0 0\nfix move grain nve/sphere disc\n"
-                  "pair_style hybrid/overlay granular mpm/penalty growth 1.3\n"
-                  "pair_coeff * * none\n"
-                  "pair_coeff 1*3 3 granular hooke 50 0 tangential linear_nohistory 0 0\n"
-                  "pair_coeff 1 2 mpm/penalty");
-  Scene run(text + "compute pair all pair mpm/penalty\nrun 0\n");
+  const std::string grain =
+      "create_atoms 3 single 17.6 5.3 0\nset type 3 diameter 1 density 1\n"
+      "group grain type 3\nvelocity grain set 1.5 0 0\nfix move grain nve/sphere disc\n"
+      "pair_style hybrid/overlay granular mpm/penalty growth 1.3\npair_coeff * * none\n"
+      "pair_coeff 1*3 3 granular hooke 50 0 tangential linear_nohistory 0 0\n"
+      "pair_coeff 1 2 mpm/penalty";
+  Scene run(replaced(disks,
+                     {{"atom_style mpm", "atom_style hybrid sphere mpm"},
+                      {"create_box 2 box", "create_box 3 box"},
+                      {"pair_style mpm/penalty growth 1.3\npair_coeff 1 2", grain}}) +
+            "compute pair all pair mpm/penalty\nrun 0\n");
   const double p = run.evaluate("v_px");
   run.commands("run 250\n");
   EXPECT_GT(run.evaluate("c_pair[1]"), 0.0);
@@ -327,13 +309,15 @@ TEST(Lists, GrainsNextToBodies)
   EXPECT_NEAR(run.evaluate("v_px"), p, 1e-12);
 }
 
-// ghosts have the present radii: with three ranks, bodies that have swollen touch at the border of two
+// ghosts have the present radii: bodies that have swollen touch at the border of two ranks
 TEST(Radii, FollowTheVolume)
 {
-  std::string text = replaced(disks, "neohookean 50 0.3", "eos ideal/gas 1.4 pressure 1");
-  text = replaced(text, "velocity one set -0.5 0.02 0\nvelocity two set 0.5 0 0\n", "");
-  text = replaced(replaced(text, "3.1 6.2", "5.2 6.2"), "20.9 5.3", "10.9 5.3");
-  OnRanks both(text, "run 150\n");
+  OnRanks both(replaced(disks,
+                        {{"neohookean 50 0.3", "eos ideal/gas 1.4 pressure 1"},
+                         {"velocity one set -0.5 0.02 0\nvelocity two set 0.5 0 0\n", ""},
+                         {"3.1 6.2", "5.2 6.2"},
+                         {"20.9 5.3", "10.9 5.3"}}),
+               "run 150\n");
   double J = 0.0;
   for (const auto &state : both.serial.gather()) J = std::max(J, state.F[0] * state.F[4]);
   measured("largest J", J);
@@ -342,37 +326,35 @@ TEST(Radii, FollowTheVolume)
   EXPECT_LT(both.difference(), 1e-10);
 }
 
-// ---------------------------------------------------------------------- input that cannot work
 TEST(BadInput, IsRefused)
 {
-  const std::vector<Mistake> cases = {
-      {"pair_style mpm/penalty growth", "Illegal pair_style mpm/penalty growth"},
-      {"pair_style mpm/penalty growth 0.9", "must be at least 1"},
-      {"pair_style mpm/penalty stiff 1", "Unknown pair_style mpm/penalty keyword: stiff"},
-      {"pair_style none\npair_style mpm/penalty\npair_coeff 1 1 5",
-       "no pair_coeff for types 1 and 2"},
-      {"pair_style none\npair_style mpm/penalty", "All pair coeffs are not set"},
-      {"pair_coeff 1 2", "Illegal pair_coeff mpm/penalty"},
-      {"pair_coeff 1 2 -5", "modulus must not be negative"},
-      {"pair_coeff 1 2 nan", "nan"},
-      {"pair_coeff 1 2 5 friction 0.3", "Illegal pair_coeff mpm/penalty"},
-      {"pair_coeff 1 2 5 friction -0.3 1", "must not be negative"},
-      {"pair_coeff 1 2 5 friction 0.3 0", "friction slip must be positive"},
-      {"pair_coeff 1 2 5 damping -1", "must not be negative"},
-      {"pair_coeff 1 2 5 sticky", "Unknown pair_coeff mpm/penalty keyword: sticky"},
-      {"pair_coeff 1 3 5", "3"},
-      {"comm_modify vel no", "comm_modify vel yes"},
-      {"unfix F2", "only one fix mpm"},
-      {"unfix F1\nunfix F2", "no fix mpm"},
-  };
-  expect_refused(disks, cases, "run 1\n");
+  expect_refused(
+      disks,
+      {{"pair_style mpm/penalty growth", "Illegal pair_style mpm/penalty growth"},
+       {"pair_style mpm/penalty growth 0.9", "must be at least 1"},
+       {"pair_style mpm/penalty stiff 1", "Unknown pair_style mpm/penalty keyword: stiff"},
+       {"pair_style none\npair_style mpm/penalty\npair_coeff 1 1 5",
+        "no pair_coeff for types 1 and 2"},
+       {"pair_style none\npair_style mpm/penalty", "All pair coeffs are not set"},
+       {"pair_coeff 1 2", "Illegal pair_coeff mpm/penalty"},
+       {"pair_coeff 1 2 -5", "modulus must not be negative"},
+       {"pair_coeff 1 2 nan", "nan"},
+       {"pair_coeff 1 2 5 friction 0.3", "Illegal pair_coeff mpm/penalty"},
+       {"pair_coeff 1 2 5 friction -0.3 1", "must not be negative"},
+       {"pair_coeff 1 2 5 friction 0.3 0", "friction slip must be positive"},
+       {"pair_coeff 1 2 5 damping -1", "must not be negative"},
+       {"pair_coeff 1 2 5 sticky", "Unknown pair_coeff mpm/penalty keyword: sticky"},
+       {"pair_coeff 1 3 5", "3"},
+       {"comm_modify vel no", "comm_modify vel yes"},
+       {"unfix F2", "only one fix mpm"},
+       {"unfix F1\nunfix F2", "no fix mpm"}},
+      "run 1\n");
   expect_error("region box block 0 1 0 1 0 1\ncreate_box 1 box\npair_style mpm/penalty\n"
                "pair_coeff * * 1\nmass 1 1\nrun 0\n",
                "requires material points");
 }
 
-/* ----------------------------------- axisymmetric: rings that are in contact along their circle */
-
+// axisymmetric: rings that are in contact along their circle
 static std::string rings(const std::string &more)
 {
   return plane("si", "f f", "0 6 0 12", 2, 0.1) +
@@ -392,8 +374,8 @@ static std::string rods(const std::string &one, const std::string &two, const st
                more);
 }
 
-// the force on each point is minus the slope of the energy, along both axes, while the area of a ring in the
-// plane stays: F_zz goes with its radius
+// the force on each point is minus the slope of the energy, along both axes, while the area of a
+// ring in the plane stays: F_zz goes with its radius
 SERIAL_TEST(Rings, ForceIsTheSlopeOfTheEnergy)
 {
   const double r[2] = {1.0, 1.14}, y[2] = {5.0, 5.1}, area = 0.04, E = 3.0, step = 1e-5;
@@ -434,8 +416,8 @@ SERIAL_TEST(Rings, ForceIsTheSlopeOfTheEnergy)
   EXPECT_NEAR(f[0][1] + f[1][1], 0.0, 1e-15);
 }
 
-// a rod that swells in a sleeve on another lattice pushes it outward. Its work is the energy of the contact, up
-// to what changes of the radii take: of that energy, the modulus of the contact over the bulk modulus
+// a rod that swells in a sleeve on another lattice pushes it outward. Its work is the energy of the
+// contact, but for the share of contact modulus over bulk modulus that changes of radii take
 SERIAL_TEST(Rings, RodSwellsInASleeve)
 {
   Scene run(rods("0 2 4 8", "2.05 3.25 4 8",

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics ranks
 // mpi: 1 2
@@ -43,19 +43,18 @@ TEST_P(Rigid, KeepsMomentum)
     Scene run(replaced(head, "GRID", grid) + fixes(file.name, thrown(GetParam())));
     const MPM_NS::SurfaceMesh mesh(binary_of(torus(1.0, 0.5, 24)), "torus", 1.0, {0.0, 0.0, 0.0});
     const double mass = 2.0 * mesh.volume;
-    double p[3], L[3], p_start[3], L_start[3], moved[3] = {}, pushed = 0.0, worst = 0.0;
+    std::array<double, 3> p, L;
+    double moved[3] = {}, pushed = 0.0, worst = 0.0;
     const auto total = [&]() {
       const auto s = run.sums();
       const double *x = run.fix_vector("tool", 24), *v = x + 3, *w = x + 6, *Q = x + 15;
-      double l[3];
+      double l[3] = {};
       const double *J = mesh.inertia;
       const double I[3][3] = {{J[0], J[3], J[4]}, {J[3], J[1], J[5]}, {J[4], J[5], J[2]}};
-      for (int d = 0; d < 3; d++) {
-        l[d] = 0.0;
+      for (int d = 0; d < 3; d++)
         for (int a = 0; a < 3; a++)
           for (int b = 0; b < 3; b++)
             for (int e = 0; e < 3; e++) l[d] += 2.0 * Q[3 * d + a] * I[a][b] * Q[3 * e + b] * w[e];
-      }
       for (int d = 0; d < 3; d++) {
         const int e = (d + 1) % 3, f = (d + 2) % 3;
         p[d] = s.p[d] + mass * v[d];
@@ -64,10 +63,7 @@ TEST_P(Rigid, KeepsMomentum)
       pushed = std::min(pushed, s.p[2]);
     };
     total();
-    for (int d = 0; d < 3; d++) {
-      p_start[d] = p[d];
-      L_start[d] = L[d];
-    }
+    const auto p_start = p, L_start = L;
     run.set_reference();
     run.each_step([&](double **) {
       total();
@@ -85,8 +81,8 @@ TEST_P(Rigid, KeepsMomentum)
 TEST_P(Rigid, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
 {
   const ScratchFile file("torus.stl", binary_of(torus(1.0, 0.5, 24)));
-  const auto tool = fixes(file.name, thrown(GetParam()));
-  Twins run(replaced(head, "GRID", "") + tool, 80, "fix grid all mpm 0.5\n" + tool, 70, 1.0e-9);
+  const auto text = replaced(head, "GRID", "") + fixes(file.name, thrown(GetParam()));
+  Twins run(text, 80, lines_again(text), 70, 1.0e-9);
   const double *a = run.serial.fix_vector("tool", 24), *b = run.whole.fix_vector("tool", 24);
   for (int k = 0; k < 24; k++) EXPECT_NEAR(a[k], b[k], 1.0e-9);
 }
@@ -167,7 +163,7 @@ TEST(RigidBody, MayBeLight)
   for (int d = 0; d < 3; d++) EXPECT_NEAR(body->compute_vector(3 + d), 0.1 * (d + 1), 1.0e-6);
 }
 
-// What moves away from a block is let go, unless contact holds the direction of the normal both ways.
+// What moves away from a block is let go, unless contact holds the normal direction both ways.
 TEST(RigidBody, LetsGo)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {8.0, 8.0, 3.0})));
@@ -196,8 +192,8 @@ TEST(RigidBody, FallsAndIsHeld)
   EXPECT_NEAR(body->compute_vector(8), 0.1 / (2.0 / 6.0), 1.0e-9);
 }
 
-// A body that is held in its turns about x and y turns about z as its moment of inertia about z says,
-// also if the axis is none of its principal axes
+// A body that is held in its turns about x and y turns about z as its moment of inertia about z
+// says, also if the axis is none of its principal axes
 SERIAL_TEST(RigidBody, TurnsAboutAHeldAxis)
 {
   const Soup soup = sheared(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}), 0.8);
@@ -215,8 +211,8 @@ SERIAL_TEST(RigidBody, TurnsAboutAHeldAxis)
   EXPECT_NEAR(body->compute_vector(23), 1.0, 1.0e-12);
 }
 
-// With MUSL, the velocities that are mapped back for the gradient are those of the body, too, as far as it has
-// decided about them: at all nodes inside, and with slip along its face only
+// With MUSL, the velocities that are mapped back for the gradient are those of the body, too, as
+// far as it has decided about them: at all nodes inside, and with slip along its face only
 TEST(RigidBody, HoldsWhatIsMappedBack)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {6.0, 6.0, 3.0})));
@@ -259,8 +255,8 @@ static std::string plate(double h, const std::string &file, const std::string &w
                 file.c_str(), words.c_str(), timestep);
 }
 
-// As long as it slides, each impulse along the block is the coefficient times the one across, also when the
-// plate weighs less than the nodes below it. In the end it sticks.
+// As long as it slides, each impulse along the block is the coefficient times the one across, also
+// when the plate weighs less than the nodes below it. In the end it sticks.
 SERIAL_TEST(RigidBody, SlidesUntilItSticks)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {6.0, 6.0, 3.0})));
@@ -287,8 +283,8 @@ SERIAL_TEST(RigidBody, SlidesUntilItSticks)
   }
 }
 
-// When it spins, the moment of friction is mu N times the mean distance of a square from its center, which
-// is (sqrt(2) + asinh(1)) / 6 of its side for a uniform pressure.
+// When it spins, the moment of friction is mu N times the mean distance of a square from its
+// center, which is (sqrt(2) + asinh(1)) / 6 of its side for a uniform pressure.
 SERIAL_TEST(RigidBody, SpinsUntilItSticks)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {6.0, 6.0, 3.0})));
@@ -312,9 +308,9 @@ SERIAL_TEST(RigidBody, SpinsUntilItSticks)
   EXPECT_LT(fabs(measured("last spin", body->compute_vector(8) / omega)), 0.02);
 }
 
-// Each step by itself: with the velocity that the body has after the step, no node goes through its surface,
-// and friction is at its limit and against the sliding, or there is none. A light plate on a block that
-// comes up and turns, so that nodes stick and slide into all directions.
+// Each step by itself: with the velocity that the body has after the step, no node goes through its
+// surface, and friction is at its limit and against the sliding, or there is none. A light plate on
+// a block that comes up and turns, so that nodes stick and slide into all directions.
 static std::map<std::array<int, 3>, Scene::Node> nodes_of(Scene &run)
 {
   std::map<std::array<int, 3>, Scene::Node> all;
@@ -391,7 +387,7 @@ SERIAL_TEST(RigidBody, FrictionIsThatOfTheVelocityAfterTheStep)
   EXPECT_GT(sticking, 10);
 }
 
-// Fix mpm/dt follows a body that is much faster than waves: it does not pass through the block unseen.
+// Fix mpm/dt follows a body that is much faster than waves: it does not pass the block unseen.
 SERIAL_TEST(RigidBody, IsNotTooFastForTheBlock)
 {
   const ScratchFile file("box.stl", text_of(box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0})));
@@ -403,17 +399,15 @@ SERIAL_TEST(RigidBody, IsNotTooFastForTheBlock)
   EXPECT_LT(run.sums().p[2], -10.0);
 }
 
-// A body that swings on elastic material gives this the kinetic energy that it loses, with any time step: to round-off, and where it turns up to
-// what its inertia has turned by in a step
+// A body that swings on elastic material gives this the kinetic energy that it loses, with any time
+// step: to round-off, and where it turns up to what its inertia has turned by in a step
 TEST(RigidBody, GivesWhatItLoses)
 {
   const ScratchFile file("box.stl", text_of(box({-1.0, -1.0, 5.0}, {5.0, 5.0, 9.0})));
   for (const std::string motion : {"velocity 0 0 -0.3 hold x y rx ry rz", "omega 0 0 0.05"})
     for (const double dt : {0.1, 0.4}) {
-      Scene run("units lj\natom_style mpm\nregion box block -2 6 -2 6 -1 12\n"
-                "create_box 1 box\nneighbor 0.3 bin\nfix grid all mpm 1.0 transfer apic\n"
-                "region b block 0 4 0 4 0 6\ncreate_points 1 region b ppc 2\n"
-                "fix m all mpm/material density 1 linear 100 0.2\n"
+      Scene run(space("lj", "p p p", "-2 6 -2 6 -1 12") +
+                body("block 0 4 0 4 0 6", "density 1 linear 100 0.2", "1.0 transfer apic") +
                 "region low block INF INF INF INF INF 0.4\n"
                 "fix w all mpm/boundary region low stick\nregion tool mpm/mesh " +
                 file.name + " 1 0 0 0\nfix body all mpm/rigid tool mass 400 stick " + motion +

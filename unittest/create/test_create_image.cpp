@@ -15,46 +15,20 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
-// what a point is, of all ranks in the order of IDs
-struct Made {
-  double tag, type, x[3], volume;
-};
-
-std::vector<Made> made(Scene &scene)
+static std::vector<Scene::State> made_by(const std::string &input)
 {
-  auto *atom = scene.lmp->atom;
-  std::vector<Made> mine(atom->nlocal);
-  for (int i = 0; i < atom->nlocal; i++) {
-    mine[i].tag = atom->tag[i];
-    mine[i].type = atom->type[i];
-    std::copy_n(atom->x[i], 3, mine[i].x);
-    mine[i].volume = atom->vfrac[i];
-  }
-  return all_by_tag(mine, scene.lmp->world);
+  Scene scene(input);
+  return scene.gather();
 }
 
-std::vector<Made> made_by(const std::string &input, MPI_Comm comm = MPI_COMM_WORLD)
-{
-  Scene scene(input, comm);
-  return made(scene);
-}
-
-bool same(const std::vector<Made> &a, const std::vector<Made> &b)
-{
-  return a.size() == b.size() &&
-      (a.empty() || memcmp(a.data(), b.data(), a.size() * sizeof(Made)) == 0);
-}
-
-double total(const std::vector<Made> &points)
+static double total(const std::vector<Scene::State> &points)
 {
   double sum = 0.0;
-  for (const auto &p : points) sum += p.volume;
+  for (const auto &p : points) sum += p.vol;
   return sum;
 }
 
-std::vector<std::size_t> of_types(const std::vector<Made> &points, int ntypes)
+static std::vector<std::size_t> of_types(const std::vector<Scene::State> &points, int ntypes)
 {
   std::vector<std::size_t> n(ntypes, 0);
   for (const auto &p : points) n[(int) p.type - 1]++;
@@ -64,12 +38,17 @@ std::vector<std::size_t> of_types(const std::vector<Made> &points, int ntypes)
 const std::string flat = plane("si", "f f", "0 1 0 1", 3),
                   deep = space("si", "f f f", "0 1 0 1 0 1", 3);
 
-int disk(int i, int j, int r)
+/** The points of type 1 that a picture gives. */
+static std::vector<Scene::State> points_of(const ScratchFile &file, const std::string &options,
+                                           const std::string &scene = flat)
+{
+  return made_by(scene + "create_points 1 image " + file.name + " " + options + "\n");
+}
+
+static int disk(int i, int j, int r)
 {
   return i * i + j * j <= r * r ? 200 : 10;
 }
-
-// ---------------------------------------------------------------- exact counts
 
 TEST(Counts, Disks)
 {
@@ -79,14 +58,13 @@ TEST(Counts, Disks)
     const ScratchFile file("disk.pgm", pgm(Pixels(n, n, 1, [=](int i, int j, int) {
                              return disk(i - R, j - R, R);
                            })));
-    const std::string image = strprintf("image %s pixel %.17g", file.name.c_str(), 1.0 / n);
-    EXPECT_EQ(made_by(flat + "create_points 1 " + image + " sites pixels\n").size(), count) << r;
+    const std::string pixel = strprintf("pixel %.17g ", 1.0 / n);
+    EXPECT_EQ(points_of(file, pixel + "sites pixels").size(), count) << r;
     // sites in the middle of pixels, four in each of them, and one on the border of each two
-    const std::string lattice = strprintf("fix grid all mpm %.17g\n", 2.0 / n);
-    EXPECT_EQ(made_by(flat + lattice + "create_points 1 " + image + "\n").size(), count);
-    EXPECT_EQ(made_by(flat + lattice + "create_points 1 " + image + " ppc 4\n").size(), 4 * count);
-    EXPECT_EQ(made_by(flat + "create_points 1 " + image + " sites pixels invert yes\n").size(),
-              n * n - count);
+    const std::string lattice = flat + strprintf("fix grid all mpm %.17g\n", 2.0 / n);
+    EXPECT_EQ(points_of(file, pixel, lattice).size(), count);
+    EXPECT_EQ(points_of(file, pixel + "ppc 4", lattice).size(), 4 * count);
+    EXPECT_EQ(points_of(file, pixel + "sites pixels invert yes").size(), n * n - count);
   }
 }
 
@@ -99,10 +77,10 @@ TEST(Counts, Spheres)
       return (i - R) * (i - R) + (j - R) * (j - R) + (k - R) * (k - R) <= R * R;
     });
     const ScratchFile file("ball.raw", raw<uint8_t>(ball));
-    EXPECT_EQ(made_by(deep +
-                      strprintf("create_points 1 image %s raw %d %d %d uint8 pixel %.17g threshold "
-                                "1 sites pixels\n",
-                                file.name.c_str(), n, n, n, 1.0 / n))
+    EXPECT_EQ(points_of(file,
+                        strprintf("raw %d %d %d uint8 pixel %.17g threshold 1 sites pixels", n, n,
+                                  n, 1.0 / n),
+                        deep)
                   .size(),
               count);
   }
@@ -131,17 +109,15 @@ TEST(Counts, PeriodicStacks)
     const ScratchFile one("schwarz.nrrd",
                           sizes + "type: float\nendian: big\nencoding: raw\n\n" + values[0]),
         other("gyroid.nrrd", sizes + "type: double\nendian: little\nencoding: raw\n\n" + values[1]);
-    const std::string cell = space("si", "p p p", "0 1 0 1 0 1"),
-                      end = " sites pixels invert yes threshold ";
-    EXPECT_EQ(made_by(cell + "create_points 1 image " + one.name + end + "-0.5\n").size(), schwarz);
-    EXPECT_EQ(made_by(cell + "create_points 1 image " + other.name + end + "-0.5\n").size(),
-              gyroid);
+    const auto count = [&](const ScratchFile &file, const std::string &options) {
+      return points_of(file, "sites pixels " + options, space("si", "p p p", "0 1 0 1 0 1")).size();
+    };
+    EXPECT_EQ(count(one, "invert yes threshold -0.5"), schwarz);
+    EXPECT_EQ(count(other, "invert yes threshold -0.5"), gyroid);
     // no pixel is at zero, and half of them are on either side
     const std::size_t half = n * n * n / 2;
-    EXPECT_EQ(made_by(cell + "create_points 1 image " + one.name + end + "-1e-6\n").size(), half);
-    EXPECT_EQ(made_by(cell + "create_points 1 image " + one.name + " sites pixels threshold 1e-6\n")
-                  .size(),
-              half);
+    EXPECT_EQ(count(one, "invert yes threshold -1e-6"), half);
+    EXPECT_EQ(count(one, "threshold 1e-6"), half);
   }
 }
 
@@ -156,9 +132,8 @@ TEST(Counts, ThresholdsOf8And16Bits)
       });
   const ScratchFile one("ramp.pgm", pgm(ramp)), other("deep.pgm", pgm(deep_ramp, false, 65535));
   const auto count = [](const ScratchFile &file, const std::string &options) {
-    return of_types(made_by(plane("si", "f f", "0 256 0 1", 3) + "create_points 1 image " +
-                            file.name + " pixel 1 sites pixels " + options + "\n"),
-                    3);
+    return of_types(
+        points_of(file, "pixel 1 sites pixels " + options, plane("si", "f f", "0 256 0 1", 3)), 3);
   };
   using Counts = std::vector<std::size_t>;
   EXPECT_EQ(count(one, ""), Counts({128, 0, 0}));
@@ -170,18 +145,15 @@ TEST(Counts, ThresholdsOf8And16Bits)
   EXPECT_EQ(count(one, "threshold 10 from 50 3 from 60 NULL from 200 2"), Counts({40, 56, 10}));
 }
 
-// ---------------------------------------------------------------- where things are
-
-// an L: a bar on the left, its foot to the right at the lower end; the picture has its first row at
-// the top
-int letter(int i, int j, int)
+// an L: a bar on the left, its foot to the right; the picture has its first row at the top
+static int letter(int i, int j, int)
 {
   return i < 2 || j >= 4 ? 255 : 0;    // 4 columns, 6 rows
 }
 const Pixels L(4, 6, 1, letter);
 
 /** Is there a point at x, y of pixels of length 0.1, from the origin of the image? */
-bool is_at(const std::vector<Made> &points, double x, double y, double z = 0.0)
+static bool is_at(const std::vector<Scene::State> &points, double x, double y, double z = 0.0)
 {
   for (const auto &p : points)
     if (std::fabs(p.x[0] - x) + std::fabs(p.x[1] - y) + std::fabs(p.x[2] - z) < 1e-9) return true;
@@ -191,18 +163,17 @@ bool is_at(const std::vector<Made> &points, double x, double y, double z = 0.0)
 TEST(Place, LetterIsUpright)
 {
   const ScratchFile file("L.pgm", pgm(L));
-  const std::string command =
-      "create_points 1 image " + file.name + " pixel 0.1 sites pixels origin 0.2 0.3 ";
-  auto points = made_by(flat + command + "\n");
+  const std::string options = "pixel 0.1 sites pixels origin 0.2 0.3 ";
+  auto points = points_of(file, options);
   ASSERT_EQ(points.size(), 16u);
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 6; j++)
       EXPECT_EQ(is_at(points, 0.25 + 0.1 * i, 0.85 - 0.1 * j), letter(i, j, 0) > 0) << i << j;
   EXPECT_TRUE(is_at({points[0]}, 0.25, 0.35)) << "the first ID is at the lower left";
 
-  points = made_by(flat + command + "axes x y\n");    // upside down
+  points = points_of(file, options + "axes x y");    // upside down
   EXPECT_TRUE(is_at(points, 0.55, 0.85) && !is_at(points, 0.55, 0.35));
-  points = made_by(flat + command + "axes -y x\n");    // rows to the right, columns downwards
+  points = points_of(file, options + "axes -y x");    // rows to the right, columns downwards
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 6; j++)
       EXPECT_EQ(is_at(points, 0.25 + 0.1 * j, 0.65 - 0.1 * i), letter(i, j, 0) > 0) << i << j;
@@ -240,15 +211,16 @@ TEST(Place, SlicesAndAxes)
 
   // the same as values without a header, which count rows upwards
   const ScratchFile file("solid.raw", "12" + raw<int16_t>(solid, true));
-  EXPECT_TRUE(same(made_by(deep + command + "\n"),
-                   made_by(deep + "create_points 1 image " + file.name +
-                           " raw 4 6 3 int16 endian big skip 2 threshold 127.5 pixel 0.1 sites "
-                           "pixels axes x -y z\n")));
+  EXPECT_TRUE(
+      identical(made_by(deep + command + "\n"),
+                points_of(file,
+                          "raw 4 6 3 int16 endian big skip 2 threshold 127.5 pixel 0.1 sites "
+                          "pixels axes x -y z",
+                          deep)));
   // a picture is a plate as thick as a pixel
-  points = made_by(deep + "create_points 1 image " + slices[0]->name +
-                   " pixel 0.1 0.1 0.4 sites pixels\n");
+  points = points_of(*slices[0], "pixel 0.1 0.1 0.4 sites pixels", deep);
   ASSERT_EQ(points.size(), 16u);
-  EXPECT_NEAR(points[0].volume, 0.004, 1e-15);
+  EXPECT_NEAR(points[0].vol, 0.004, 1e-15);
   EXPECT_NEAR(points[0].x[2], 0.2, 1e-12);
 }
 
@@ -270,15 +242,10 @@ TEST(Place, EmptyMargins)
     return i >= 9 && i < 13 && j >= 3 && j < 9 ? letter(i - 9, j - 3, 0) : 0;
   });
   const ScratchFile one("L.pgm", pgm(L)), other("wide.pgm", pgm(wide));
-  const std::string grid = "fix grid all mpm 0.03\n";
-  const auto a = made_by(flat + grid + "create_points 1 image " + one.name +
-                         " pixel 0.1 origin 0.11 0.07\n"),
-             b = made_by(flat + grid + "create_points 1 image " + other.name +
-                         " pixel 0.1 origin -0.79 -0.93\n");
-  EXPECT_TRUE(same(a, b));
+  const std::string scene = flat + "fix grid all mpm 0.03\n";
+  EXPECT_TRUE(identical(points_of(one, "pixel 0.1 origin 0.11 0.07", scene),
+                        points_of(other, "pixel 0.1 origin -0.79 -0.93", scene)));
 }
-
-// ---------------------------------------------------------------- formats and ranks
 
 TEST(Formats, AllGiveTheSamePoints)
 {
@@ -294,25 +261,20 @@ TEST(Formats, AllGiveTheSamePoints)
                                                             {pgm(p16, false, 65535), ""},
                                                             {ppm(p), ""},
                                                             {ppm(p, as_gray, true), ""}};
-  std::string header = nrrd_header(p, "uchar", "encoding: raw\n\n");
-  files.push_back({header + raw<uint8_t>(p), "axes x -y"});
+  files.push_back({nrrd_header(p, "uchar", "encoding: raw\n\n") + raw<uint8_t>(p), "axes x -y"});
   files.push_back({raw<float>(p), "raw 11 9 1 float threshold 127.5 axes x -y"});
   files.push_back({raw<uint16_t>(p16, true), "raw 11 9 1 uint16 endian big axes x -y"});
-  if (MPM_NS::png_available()) {
-    files.push_back({png(p), ""});
-    files.push_back({png(p16, 16), ""});
-    files.push_back({png(p, 8, 2), ""});
-    files.push_back({png(p, 8, 3), ""});
-    files.push_back({png(p, 8, 4), ""});
-  }
-  std::vector<Made> first;
+  if (MPM_NS::png_available())
+    for (const auto &text : {png(p), png(p16, 16), png(p, 8, 2), png(p, 8, 3), png(p, 8, 4)})
+      files.push_back({text, ""});
+  std::vector<Scene::State> first;
   for (const auto &[text, options] : files) {
     const ScratchFile file("image", text);
-    const auto points = made_by(flat + "fix grid all mpm 0.04\ncreate_points 1 image " + file.name +
-                                " pixel 0.09 origin 0.003 0.004 " + options + "\n");
+    const auto points = points_of(file, "pixel 0.09 origin 0.003 0.004 " + options,
+                                  flat + "fix grid all mpm 0.04\n");
     if (first.empty()) first = points;
     EXPECT_GT(points.size(), 500u);
-    EXPECT_TRUE(same(points, first)) << options;
+    EXPECT_TRUE(identical(points, first)) << options;
   }
 }
 
@@ -331,12 +293,10 @@ TEST(Ranks, PointsAreThoseOfOne)
     Scene serial(deep + text + options + "\n", MPI_COMM_SELF);
     for (const char *layout : {"", "processors 1 1 *\n", "comm_style tiled\n"}) {
       Scene parallel(layout + deep + text + options + "\n");
-      EXPECT_TRUE(same(made(serial), made(parallel))) << options << layout;
+      EXPECT_TRUE(identical(serial.gather(), parallel.gather())) << options << layout;
     }
   }
 }
-
-// ---------------------------------------------------------------- values
 
 TEST(Values, ColorsToTypes)
 {
@@ -350,9 +310,7 @@ TEST(Values, ColorsToTypes)
   std::size_t n[4] = {0, 0, 0, 0};
   for (const int v : p.values) n[v]++;
   const auto count = [&](const std::string &options) {
-    return of_types(made_by(flat + "create_points 1 image " + file.name +
-                            " pixel 0.1 sites pixels " + options + "\n"),
-                    3);
+    return of_types(points_of(file, "pixel 0.1 sites pixels " + options), 3);
   };
   using Counts = std::vector<std::size_t>;
   EXPECT_EQ(count("color 255 0 0 2 color 0 0 255 3"), Counts({0, n[0], n[2]}));
@@ -393,10 +351,8 @@ TEST(Values, Fields)
   EXPECT_EQ(over_ranks(n), 100);
 }
 
-// ---------------------------------------------------------------- surfaces between pixels
-
 /** Share of a pixel, cut into 16 x 16, that is in a disk, in 255 levels. */
-Pixels smooth_disk(double R, double x0, double y0, int n)
+static Pixels smooth_disk(double R, double x0, double y0, int n)
 {
   return Pixels(n, n, 1, [=](int i, int j, int) {
     int in = 0;
@@ -415,10 +371,9 @@ TEST(Surface, VolumeOfADiskIsOfSecondOrder)
     for (const int R : {5, 10, 20, 40, 80}) {
       const int n = 5 * R / 2 + 4;
       const ScratchFile file("disk.pgm", pgm(smooth_disk(R, 0.5 * n + 0.137, 0.5 * n - 0.211, n)));
-      const auto points = made_by(flat +
-                                  strprintf("fix grid all mpm %.17g\ncreate_points 1 image %s "
-                                            "pixel %.17g origin 0.013 0.021 smooth 1\n",
-                                            0.3 / R * cells, file.name.c_str(), 0.3 / R));
+      const auto points =
+          points_of(file, strprintf("pixel %.17g origin 0.013 0.021 smooth 1", 0.3 / R),
+                    flat + strprintf("fix grid all mpm %.17g\n", 0.3 / R * cells));
       errors.push_back(measured(strprintf("%g pixels per cell, R = %d pixels", cells, R),
                                 total(points) / (PI * 0.09)) -
                        1.0);
@@ -447,10 +402,11 @@ TEST(Surface, VolumeOfABallIsOfSecondOrder)
       return in;
     });
     const ScratchFile file("ball.raw", raw<uint16_t>(ball));
-    const auto points = made_by(deep +
-                                strprintf("create_points 1 image %s raw %d %d %d uint16 threshold "
-                                          "256 pixel %.17g smooth 0.7 sites pixels\n",
-                                          file.name.c_str(), n, n, n, 0.25 / R));
+    const auto points = points_of(file,
+                                  strprintf("raw %d %d %d uint16 threshold 256 pixel %.17g smooth "
+                                            "0.7 sites pixels",
+                                            n, n, n, 0.25 / R),
+                                  deep);
     errors[R == 12] = measured(strprintf("R = %d pixels", R),
                                total(points) / (4.0 / 3.0 * PI * std::pow(0.25, 3))) -
         1.0;
@@ -464,36 +420,30 @@ TEST(Surface, NothingIsLost)
 {
   const int n = 40;
   const ScratchFile file("disk.pgm", pgm(smooth_disk(14.3, 19.9, 20.2, n)));
-  const auto scene = [&](int every) {
-    return made_by(flat +
-                   strprintf("create_points 1 image %s pixel 0.025 smooth 1.5 spacing %.17g\n",
-                             file.name.c_str(), 0.025 / every));
-  };
   double volume[4];
   for (const int every : {1, 2, 4}) {
-    const auto points = scene(every);
+    const auto points =
+        points_of(file, strprintf("pixel 0.025 smooth 1.5 spacing %.17g", 0.025 / every));
     volume[every - 1] = total(points);
     const double site = 0.025 * 0.025 / (every * every);
     for (const auto &p : points) {
-      EXPECT_GE(p.volume, 0.1 * site * (1.0 - 1e-9));
-      EXPECT_LE(p.volume, 1.4 * site);
+      EXPECT_GE(p.vol, 0.1 * site * (1.0 - 1e-9));
+      EXPECT_LE(p.vol, 1.4 * site);
     }
   }
   EXPECT_NEAR(volume[0] / volume[3], 1.0, 3e-4);
   EXPECT_NEAR(volume[1] / volume[3], 1.0, 1e-4);
 }
 
-// a plane at 1/3 of a pixel, by the brightness of the pixels that it cuts; what is dark, too, and
-// the rest of the picture
+// a plane at 1/3 of a pixel, by the brightness of what it cuts; and what is dark
 TEST(Surface, PlaneAndItsComplement)
 {
   const ScratchFile file("plane.pgm", pgm(Pixels(10, 4, 1, [](int i, int, int) {
-                           return i < 4 ? 240 : i == 4 ? 160 : i == 5 ? 0 : 0;    // 2/3 of this one
+                           return i < 4 ? 240 : i == 4 ? 160 : 0;    // 2/3 of this one
                          })));
-  const std::string command =
-      "create_points 1 image " + file.name + " pixel 0.1 0.25 sites pixels smooth 0 threshold 120";
-  const double a = total(made_by(flat + command + "\n")),
-               b = total(made_by(flat + command + " invert yes\n"));
+  const std::string options = "pixel 0.1 0.25 sites pixels smooth 0 threshold 120";
+  const double a = total(points_of(file, options)),
+               b = total(points_of(file, options + " invert yes"));
   EXPECT_NEAR(a + b, 1.0, 1e-6);
   EXPECT_NEAR(a, 0.475, 1e-6);    // 160 to 0 is linear: 120 is at a quarter of a pixel
 }
@@ -514,16 +464,16 @@ TEST(Surface, GoesOnAcrossPeriodicFaces)
   double volume[2];
   for (int shift : {0, 1}) {
     const ScratchFile file("cell.raw", values[shift]);
-    volume[shift] = total(made_by(plane("si", "p p", "0 1 0 1") +
-                                  strprintf("create_points 1 image %s raw %d %d 1 float pixel "
-                                            "%.17g smooth 2 threshold 0.5 sites pixels\n",
-                                            file.name.c_str(), n, n, 1.0 / n)));
+    volume[shift] = total(
+        points_of(file,
+                  strprintf("raw %d %d 1 float pixel %.17g smooth 2 threshold 0.5 sites pixels", n,
+                            n, 1.0 / n),
+                  plane("si", "p p", "0 1 0 1")));
   }
   EXPECT_NEAR(volume[0], volume[1], 1e-7);
 }
 
-// gray values as the temperature at the start, and as the factor of a parameter, with which points
-// then yield
+// gray values as the temperature at the start, and as the factor of a yield stress
 TEST(Values, HistoryAndParameters)
 {
   const ScratchFile file("ramp.pgm", pgm(Pixels(8, 8, 1, [](int i, int j, int) {
@@ -561,12 +511,9 @@ TEST(Values, HistoryAndParameters)
   EXPECT_GT(over_ranks(yields), 100.0);
 }
 
-// ---------------------------------------------------------------- physics
-
-// conductivities of a picture: points of two types with a material each; layers along and across
-// the heat, and a checkerboard, which conducts as the root of the product (J. B. Keller, J. Math.
-// Phys. 5 (1964) 548)
-double conductivity(const std::string &file, int n, const std::string &shape = "quadratic")
+// two conductivities in a picture: layers along and across the heat, and a checkerboard, which
+// conducts as the root of the product (J. B. Keller, J. Math. Phys. 5 (1964) 548)
+static double conductivity(const std::string &file, int n, const std::string &shape = "quadratic")
 {
   Scene run(plane("lj", "f f", "0 1 0 1", 2, 0.1 / n) +
             strprintf("fix grid all mpm %.17g shape %s\n", 1.0 / n, shape.c_str()) +
@@ -626,9 +573,7 @@ SERIAL_TEST(Conduction, Checkerboard)
   EXPECT_GT(error[0] * error[1], 0.0) << "from one side";
 }
 
-// ---------------------------------------------------------------- mistakes
-
-const char *const good_line = "create_points 1 image GRAY pixel 0.1\n";
+static const char *const good_line = "create_points 1 image GRAY pixel 0.1\n";
 
 PARAMETER_TEST(
     Mistake, IsExplained, Change,
@@ -702,5 +647,3 @@ TEST(Mistakes, Overlap)
   // phases of one file beside each other do not
   EXPECT_EQ(made_by(flat + command + replaced(command, "sites", "invert yes sites")).size(), 24u);
 }
-
-}    // namespace

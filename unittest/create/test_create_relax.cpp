@@ -11,16 +11,14 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
-std::string relaxed(double spacing, int times, const std::string &more = "")
+static std::string relaxed(double spacing, int times, const std::string &more = "")
 {
   return strprintf("create_points 1 region body spacing %.17g relax %d %s\n", spacing, times,
                    more.c_str());
 }
 
 /** Least and largest volume over the mean. */
-std::array<double, 2> extremes(const std::vector<Scene::State> &points)
+static std::array<double, 2> extremes(const std::vector<Scene::State> &points)
 {
   double least = 1e300, most = 0.0, sum = 0.0;
   for (const auto &p : points) {
@@ -108,8 +106,7 @@ TEST(Relax, BlocksOfWholeCellsStay)
   }
 }
 
-// across a periodic face points keep their distance, also in a box of three sites; the two rows of
-// a band of 2.6 spacings are equal
+// points keep their distance across a periodic face; two rows of a band of 2.6 spacings are equal
 TEST(Relax, PeriodicBand)
 {
   for (const double length : {0.3, 2.0}) {
@@ -208,5 +205,3 @@ TEST(Relax, LinearShapeIsSaid)
                   .size(),
               shape == "linear" ? 1u : 0u);
 }
-
-}    // namespace

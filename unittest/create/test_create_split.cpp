@@ -11,19 +11,17 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 const std::string place =
     "variable px internal 0\nvariable py internal 0\nvariable pz internal 0\n";
 const std::string axes_2 = " v_px v_py", axes_3 = " v_px v_py v_pz";
 
-std::vector<Scene::State> made(const std::string &scene)
+static std::vector<Scene::State> made(const std::string &scene)
 {
   Scene run(scene);
   return run.gather();
 }
 
-double total(const std::vector<Scene::State> &points)
+static double total(const std::vector<Scene::State> &points)
 {
   double sum = 0.0;
   for (const auto &p : points) sum += p.vol;
@@ -65,8 +63,7 @@ TEST(Split, PartsOfCellsAtAFace)
   EXPECT_NEAR(total(points), 100.0 / 256.0, 1e-14);
 }
 
-// sites that are divided at the surface follow it: the volume of a ball by the size of its points
-// there
+// sites that are divided at the surface follow it: the volume of a ball
 TEST(Split, SurfaceOfABall)
 {
   const double exact = 4.0 / 3.0 * 3.14159265358979323846 * 0.4 * 0.4 * 0.4;
@@ -100,9 +97,8 @@ TEST(Split, IsTheSameOnAllRanks)
   EXPECT_TRUE(identical(one.gather(), all.gather()));
 }
 
-// a free bar that swings in its first mode: what is left of the velocities after a period, less
-// what they were
-double error_after_period(const std::string &n)
+// a free bar swings in its first mode: change of its velocities in a period
+static double error_after_period(const std::string &n)
 {
   const int cells = 64;
   Scene run(
@@ -163,5 +159,3 @@ TEST(Split, Mistakes)
                               "create_points 1 box ppc 1 split v_n v_px v_py\n"),
                        "10 points of sites at faces of the box|20 points of sites"));
 }
-
-}    // namespace

@@ -10,19 +10,14 @@
 #include "bad_input_testing.h"
 #include "mpm_lammps.h"
 
-#include "base/mpm_points.h"
 #include "table/table.h"
 
 #include "group.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-// ---------------------------------------------------------------- a dump, and on from there
-
 /** What a scene is before its points, with the step and time at which it begins. */
-std::string bodies_of(int dim, const std::string &transfer, const std::string &start)
+static std::string bodies_of(int dim, const std::string &transfer, const std::string &start)
 {
   return box(dim, "si", "p f f", "0 1 0 1 -0.5 0.5", 2) +
       "fix prop all property/atom d_k i_n d2_a 2 writedata no\nfix grid all mpm 0.1 transfer " +
@@ -42,8 +37,10 @@ const std::string all_state =
     "velocity stress F mass volume0 eplastic image d_k i_n d2_a[*] vonmises density volume";
 
 /** A run that is dumped at half, one that goes on from this file, and the difference at the end. */
-double difference_after_dump(const std::string &transfer, int dim, const std::string &modify = "",
-                             const std::string &name = "state.vtp", const std::string &more = "")
+static double difference_after_dump(const std::string &transfer, int dim,
+                                    const std::string &modify = "",
+                                    const std::string &name = "state.vtp",
+                                    const std::string &more = "")
 {
   const ScratchFile file(name);
   std::string dump = file.name;
@@ -80,8 +77,7 @@ TEST(Dump, CompressedAndInPieces)
       1e-11);
 }
 
-// points that have left the box since the last neighbor list, and are put back into it, keep the
-// places that they have without periods
+// points that have left the box since the last neighbor list keep their places without periods
 TEST(Dump, PointsOnTheirWayThroughAPeriodicFace)
 {
   const ScratchFile file("state.vtp");
@@ -148,16 +144,14 @@ TEST(Dump, WhatIsMissingIsSaid)
       << warnings[0];
 }
 
-// ---------------------------------------------------------------- text
-
 const std::string flat = plane("si", "f f", "0 1 0 1", 3) + "fix grid all mpm 0.1\n";
 
 struct Made {
   double tag, type, x[3], v[3], volume, mass, stress, shear;
 };
 
-std::vector<Made> made_of(const std::string &text, const std::string &keywords,
-                          const std::string &scene = flat)
+static std::vector<Made> made_of(const std::string &text, const std::string &keywords,
+                                 const std::string &scene = flat)
 {
   const ScratchFile file("points", text);
   Scene run(scene + "create_points 2 table " + file.name + " " + keywords + "\n");
@@ -271,8 +265,6 @@ TEST(Text, History)
   EXPECT_EQ(run.evaluate("c_s[2]"), 400.0);
   EXPECT_EQ(run.evaluate("c_s[3]"), 10.0);
 }
-
-// ---------------------------------------------------------------- mistakes
 
 TEST(Mistakes, InText)
 {
@@ -390,5 +382,3 @@ TEST(Mistakes, InADump)
       answer(replaced(flat, "units si", "units cgs") + "create_points 1 table " + file.name + "\n"),
       "has units si, but this simulation has units cgs"));
 }
-
-}    // namespace

@@ -1,16 +1,10 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 #ifndef MPM_TEST_OPTION_MANUAL_H
 #define MPM_TEST_OPTION_MANUAL_H
 
-// Parts of the manual that are made from declared options: the table of keywords, and the sentence
-// about the defaults.
+// Parts of the manual made from declared options: table of keywords, sentence about defaults.
 
 #include "declare/option.h"
 

@@ -1,13 +1,7 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
-
-// Declared options: reading, messages, refusals, comparison with a restart file, text for the
-// manual.
+// Declared options: reading, messages, refusals, comparison with a restart file, manual.
 
 #include "declare/option_manual.h"
 
@@ -20,8 +14,6 @@
 using namespace MPM_NS;
 using namespace MPM_NS::option;
 using ::testing::HasSubstr;
-
-namespace {
 
 enum Color { RED, GREEN, BLUE };
 
@@ -97,12 +89,10 @@ struct Paint {
   int end = 0;
 };
 
-std::string answer(const std::string &words)
+static std::string answer(const std::string &words)
 {
   return Paint().read(words);
 }
-
-}    // namespace
 
 TEST(Option, AllKindsAreRead)
 {

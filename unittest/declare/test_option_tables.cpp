@@ -1,10 +1,5 @@
-/* ----------------------------------------------------------------------
-   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
-   https://www.lammps.org/
-
-   This file is part of the MPM package, distributed under the terms of the
-   GNU General Public License, version 2, like LAMMPS itself.
-------------------------------------------------------------------------- */
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit docs
 
@@ -51,9 +46,7 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-namespace {
-
-std::map<std::string, std::string> files()
+static std::map<std::string, std::string> files()
 {
   std::map<std::string, std::string> all;
   const auto add = [&](const std::string &page, const Options &o) {
@@ -100,8 +93,6 @@ std::map<std::string, std::string> files()
   add("region_mpm_mesh", MPMRegionMeshOptions().declare());
   return all;
 }
-
-}    // namespace
 
 TEST(OptionTables, AreUpToDate)
 {

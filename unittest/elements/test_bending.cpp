@@ -3,8 +3,7 @@
 
 // labels: unit
 
-// Bending of surfaces of triangles and of lines: energies of cylinders and spheres, and what
-// rotations do.
+// Bending of surfaces of triangles and of lines: energies of cylinders and spheres, rotations.
 
 #include "math/matrix.h"
 #include "mesh/bending.h"
@@ -21,13 +20,11 @@
 
 using namespace MPM_NS;
 
-namespace {
-
 using Place = std::array<double, 3>;
 
 /** n x n pairs of triangles in a square of edge 1, every other pair with the other diagonal if
  *  alternate, inner nodes moved by up to a part of the spacing. */
-Mesh sheet(int n, double disorder, bool alternate = true)
+static Mesh sheet(int n, double disorder, bool alternate = true)
 {
   Mesh mesh;
   for (int j = 0; j <= n; j++)
@@ -50,8 +47,8 @@ Mesh sheet(int n, double disorder, bool alternate = true)
   return mesh;
 }
 
-void places(const Mesh &mesh, const MeshElement &patch,
-            const std::function<Place(const Place &)> &motion, double (*x)[3])
+static void places(const Mesh &mesh, const MeshElement &patch,
+                   const std::function<Place(const Place &)> &motion, double (*x)[3])
 {
   for (int k = 0; k < element_nodes(patch.type); k++) {
     const Place at = motion(mesh.nodes[patch.node[k]]);
@@ -59,14 +56,14 @@ void places(const Mesh &mesh, const MeshElement &patch,
   }
 }
 
-Place same(const Place &x)
+static Place same(const Place &x)
 {
   return x;
 }
 
 /** Energy of all patches, with D = 1. */
-double energy(const Mesh &mesh, double nu, const std::function<Place(const Place &)> &motion,
-              bool linear = false)
+static double energy(const Mesh &mesh, double nu, const std::function<Place(const Place &)> &motion,
+                     bool linear = false)
 {
   double sum = 0.0;
   for (const auto &e : mesh.elements) {
@@ -86,14 +83,12 @@ double energy(const Mesh &mesh, double nu, const std::function<Place(const Place
   return sum;
 }
 
-Place turned(const Place &x)
+static Place turned(const Place &x)
 {
   const double c = std::cos(0.7), s = std::sin(0.7);
   const Place y = {c * x[0] - s * x[1], s * x[0] + c * x[1], x[2]};
   return {c * y[0] + s * y[2], y[1], c * y[2] - s * y[0]};
 }
-
-}    // namespace
 
 // a square that is rolled to a cylinder of radius 2, along and across the mesh: D/2 k^2 per area,
 // whatever Poisson's ratio, on regular and on irregular meshes with diagonals that change
@@ -145,8 +140,7 @@ TEST(Bending, PoissonsRatio)
       }
 }
 
-// a plate one square wide, whose nodes do not tell how it bends across, has no moment there, so
-// that its stiffness is E I, not D
+// a plate one square wide has no moment across, so that its stiffness is E I, not D
 TEST(Bending, NarrowStrip)
 {
   const double k = 1e-6, nu = 0.3;
@@ -230,13 +224,10 @@ TEST(Bending, ShortWaves)
   EXPECT_LT(other(9.0), other(1.0));
 }
 
-namespace {
-
 /** Waves of twelve and six edges, in directions in degrees, must have their exact energy within 3
- *  and 8 % where it is that of all rows, and less than these parts by mean curvatures alone, also
- *  where nodes are moved. */
-void expect_waves(bool alternate, bool linear, int rows, const std::vector<double> &directions,
-                  double most_of_12, double most_of_6)
+ *  and 8 % where it is that of all rows, and less by mean curvatures alone. */
+static void expect_waves(bool alternate, bool linear, int rows,
+                         const std::vector<double> &directions, double most_of_12, double most_of_6)
 {
   const int n = 30;
   const double small = 1e-7;
@@ -280,8 +271,6 @@ void expect_waves(bool alternate, bool linear, int rows, const std::vector<doubl
       }
 }
 
-}    // namespace
-
 // squares with parallel diagonals
 TEST(Bending, WavesOfLinearCurvatures)
 {
@@ -293,8 +282,7 @@ TEST(Bending, WavesWhereDiagonalsChangeDirection)
   expect_waves(true, false, 7, {0.0, 30.0, 45.0}, 0.97, 0.88);
 }
 
-// short waves end at creases, as curvatures do, and rotations of a surface that is bent at rest do
-// not make any
+// short waves end at creases, and rotations of a surface that is bent at rest make none
 TEST(Bending, ShortWavesOfSurfacesThatAreNotPlane)
 {
   for (const int kind : {0, 1, 2, 3}) {

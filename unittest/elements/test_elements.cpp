@@ -8,88 +8,9 @@
 // Bodies of finite elements whose nodes are material points: fix mpm/elements, create_points mesh.
 
 #include "elements/fix_mpm_elements.h"
-#include "mpm_lammps.h"
+#include "elements/thin_testing.h"
 
 using namespace MPM_TEST;
-
-namespace {
-
-/** A mesh file of Gmsh. */
-std::string gmsh(int nnode, const std::string &nodes, int nelement, const std::string &elements)
-{
-  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(nnode) + "\n" + nodes +
-      "$EndNodes\n$Elements\n" + std::to_string(nelement) + "\n" + elements + "$EndElements\n";
-}
-
-/** A rectangle or box of n[0] x n[1] (x n[2]) cells with edges l, lower corner 0: quadrangles or
- *  hexahedra, or these cut into triangles or tetrahedra. skew: displacement of inner nodes in
- *  cells. */
-std::string box_mesh(int dim, const int *n, const double *l, bool simplices, double skew)
-{
-  const int nz = dim == 3 ? n[2] : 0, sx = 1, sy = n[0] + 1, sz = sy * (n[1] + 1);
-  std::string nodes, elements;
-  int nnode = 0, nelement = 0;
-  for (int k = 0; k <= nz; k++)
-    for (int j = 0; j <= n[1]; j++)
-      for (int i = 0; i <= n[0]; i++) {
-        const bool inner =
-            i > 0 && i < n[0] && j > 0 && j < n[1] && (dim == 2 || (k > 0 && k < nz));
-        double x[3] = {(double) i, (double) j, (double) k};
-        if (inner)
-          for (int d = 0; d < dim; d++) x[d] += skew * sin(12.9 * i + 7.3 * j + 4.1 * k + 2.0 * d);
-        nodes += strprintf("%d %.17g %.17g %.17g\n", ++nnode, x[0] * l[0] / n[0],
-                           x[1] * l[1] / n[1], dim == 3 ? x[2] * l[2] / n[2] : 0.0);
-      }
-  const auto add = [&](int type, const std::vector<int> &list) {
-    elements += strprintf("%d %d 2 1 1", ++nelement, type);
-    for (const int node : list) elements += strprintf(" %d", node);
-    elements += "\n";
-  };
-  for (int k = 0; k < std::max(1, nz); k++)
-    for (int j = 0; j < n[1]; j++)
-      for (int i = 0; i < n[0]; i++) {
-        const int a = 1 + i * sx + j * sy + k * sz;
-        const int c[8] = {a,      a + sx,      a + sx + sy,      a + sy,
-                          a + sz, a + sx + sz, a + sx + sy + sz, a + sy + sz};
-        if (dim == 2 && !simplices) add(3, {c[0], c[1], c[2], c[3]});
-        if (dim == 2 && simplices) {
-          add(2, {c[0], c[1], c[2]});
-          add(2, {c[0], c[3], c[2]});    // clockwise
-        }
-        if (dim == 3 && !simplices) add(5, {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]});
-        if (dim == 3 && simplices)
-          for (const auto &t : {std::array<int, 2>{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}})
-            add(4, {c[0], c[t[0]], c[t[1]], c[6]});
-      }
-  return gmsh(nnode, nodes, nelement, elements);
-}
-
-/** A disk of triangles in rings around the origin. */
-std::string disk_mesh(int rings, double radius)
-{
-  std::string nodes = "1 0 0 0\n", elements;
-  int nnode = 1, nelement = 0;
-  for (int k = 1; k <= rings; k++)
-    for (int m = 0; m < 6 * k; m++) {
-      const double r = radius * k / rings, a = M_PI * m / (3.0 * k);
-      nodes += strprintf("%d %.17g %.17g 0\n", ++nnode, r * cos(a), r * sin(a));
-    }
-  const auto node = [](int k, int m) {
-    return k == 0 ? 1 : 2 + 3 * k * (k - 1) + m % (6 * k);
-  };
-  const auto add = [&](int a, int b, int c) {
-    elements += strprintf("%d 2 2 1 1 %d %d %d\n", ++nelement, a, b, c);
-  };
-  for (int k = 1; k <= rings; k++)
-    for (int s = 0; s < 6; s++)
-      for (int m = 0; m < k; m++) {
-        add(node(k - 1, s * (k - 1) + m), node(k, s * k + m), node(k, s * k + m + 1));
-        if (m < k - 1)
-          add(node(k - 1, s * (k - 1) + m), node(k, s * k + m + 1),
-              node(k - 1, s * (k - 1) + m + 1));
-      }
-  return gmsh(nnode, nodes, nelement, elements);
-}
 
 struct Kind {
   int dim;
@@ -104,41 +25,30 @@ const Kind kinds[] = {{2, true, ""}, {2, false, ""}, {2, false, " locking fbar"}
                       {3, true, ""}, {3, false, ""}, {3, false, " locking fbar"}};
 
 /** A box of 4 x 3 (x 3) cells of size 1 from 2 2 2 on, in a periodic box. */
-std::string block(const Kind &kind, const std::string &file, const std::string &fix_options = "")
+static std::string block(const Kind &kind, const std::string &file,
+                         const std::string &fix_options = "")
 {
-  const bool flat = kind.dim == 2;
-  return strprintf(R"(
-units lj
-dimension %d
-boundary p p p
-atom_style mpm
-region box block 0 10 0 10 %s
-create_box 1 box
-fix g all mpm 1.0 %s
-create_points 1 mesh %s scale 1.0 move 2 2 %s
-fix m all mpm/material density 2 neohookean 30 0.3
-fix e all mpm/elements %s%s
-thermo_style custom step
-timestep 0.001
-)",
-                   kind.dim, flat ? "-0.5 0.5" : "0 10", fix_options.c_str(), file.c_str(),
-                   flat ? "" : "2", file.c_str(), kind.options);
+  return MPM_TEST::box(kind.dim, "lj", "p p p", "0 10 0 10 0 10") + "fix g all mpm 1.0 " +
+      fix_options + "\ncreate_points 1 mesh " + file + " scale 1.0 move 2 2 " +
+      (kind.dim == 2 ? "" : "2") +
+      "\nfix m all mpm/material density 2 neohookean 30 0.3\nfix e all mpm/elements " + file +
+      kind.options + "\nthermo_style custom step\ntimestep 0.001\n";
 }
 
-std::string block_mesh(const Kind &kind, double skew = 0.15)
+static std::string block_mesh(const Kind &kind, double skew = 0.15)
 {
   const int n[3] = {4, 3, 3};
   const double l[3] = {4.0, 3.0, 3.0};
   return box_mesh(kind.dim, n, l, kind.simplices, skew);
 }
 
-FixMPMElements *elements(Scene &run)
+static FixMPMElements *elements(Scene &run)
 {
   return run.fix<FixMPMElements>("e");
 }
 
 /** Positions F X + shift of the present ones. */
-void deform(Scene &run, const double F[3][3])
+static void deform(Scene &run, const double F[3][3])
 {
   for (int i = 0; i < run.n(); i++) {
     double *x = run.x()[i],
@@ -149,7 +59,7 @@ void deform(Scene &run, const double F[3][3])
 }
 
 /** Positions of all points by ID. */
-std::vector<std::array<double, 3>> positions(Scene &run)
+static std::vector<std::array<double, 3>> positions(Scene &run)
 {
   const auto all = run.gather();
   std::vector<std::array<double, 3>> X(all.size() + 1);
@@ -157,18 +67,8 @@ std::vector<std::array<double, 3>> positions(Scene &run)
   return X;
 }
 
-double sum_over_ranks(double x)
-{
-  double all;
-  MPI_Allreduce(&x, &all, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-  return all;
-}
-
-}    // namespace
-
-// Volume and mass, and the patch test: with an affine deformation forces on inner nodes vanish on
-// an irregular mesh, each node has F and the stress of the law, and the stored energy is that of
-// the law
+// Volume, mass, and patch test: with an affine deformation forces on inner nodes vanish on an
+// irregular mesh; each node has F, and stress and stored energy of the law
 TEST(Elements, Patch)
 {
   for (const auto &kind : kinds) {
@@ -272,8 +172,7 @@ SERIAL_TEST(Elements, RegionsHoldThemAsFacesDo)
     }
 }
 
-// Nodes of elements are farther apart than nodes of the lattice: nothing comes apart, as it does
-// without the elements
+// Nodes of elements are farther apart than nodes of the lattice: they hold together
 SERIAL_TEST(Elements, DoNotComeApart)
 {
   const int n[3] = {4, 4, 0};
@@ -395,12 +294,9 @@ run 0
   }
 }
 
-/* ----------------------------------------------------------------------
-   D2: cantilever 4 m x 1 m, plane strain, gravity 10 applied suddenly. Finite elements of the same
-   kind without a lattice (quadrangles): the lower corner goes down by 3.2958 with 40 x 10, by
-   3.3027 with 80 x 20 elements, at t = 1.048
-------------------------------------------------------------------------- */
-
+// D2: cantilever 4 m x 1 m, plane strain, gravity 10 applied suddenly. Finite elements of the same
+// kind without a lattice (quadrangles): the lower corner goes down by 3.2958 with 40 x 10, by
+// 3.3027 with 80 x 20 elements, at t = 1.048
 static double beam(int ny, double h, bool simplices, const char *locking, double &t_lowest)
 {
   const int n[2] = {4 * ny, ny};
@@ -455,8 +351,7 @@ SERIAL_TEST(Elements, Cantilever)
   EXPECT_NEAR((-3.305 - more) / (-3.305 - few), 0.25, 0.08);
 }
 
-// nodes in contact with grains are as large as the square or cube of their volume, unless told
-// otherwise
+// nodes in contact with grains have the width of their volume, unless told otherwise
 TEST(Elements, Diameter)
 {
   for (const auto &kind : kinds) {
@@ -513,13 +408,12 @@ timestep 0.01
   }
 }
 
-// a disk of triangles meets a disk of material points: momentum, energy, and what two disks of
-// material points do
+// a disk of triangles meets one of material points: momentum, energy, and what two of points do
 SERIAL_TEST(Elements, Impact)
 {
   double rebound[2];
   for (const bool mesh : {false, true}) {
-    ScratchFile file("disk.msh", disk_mesh(6, 3.0));
+    ScratchFile file("disk.msh", rings_of_triangles(6, 3.0).text());
     Scene run(plane("lj", "f f", "-10 10 -6 6", 2) +
               "region left cylinder z -3.5 0.1 3 INF INF\n"
               "region right cylinder z 3.5 -0.1 3 INF INF\n"
@@ -603,11 +497,7 @@ TEST(Elements, RanksAndRestart)
         "velocity all set v_vx v_vy 0\ntimestep 0.01\n";
     ScratchFile own("serial.msh", block_mesh(kind));
     Scene serial(replaced(start, file.name, own.name) + motion + "run 300\n", MPI_COMM_SELF);
-    const auto first = start.find("fix g "), create = start.find("create_points"),
-               next = start.find('\n', create) + 1;
-    Continued run(start + motion, 150,
-                  start.substr(first, create - first) + start.substr(next) + "timestep 0.01\n",
-                  150);
+    Continued run(start + motion, 150, lines_again(start + motion), 150);
     const auto state = run.whole.gather();
     EXPECT_LT(measured("ranks", difference(serial.gather(), state)), 1e-9);
     double strain = 0.0;

@@ -14,13 +14,10 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr double A = 0.01, GAP = 1.1 * A, WIDTH = 0.2, THICK = 4.0e-4, R_GAS = 287.0;
 
-/** Half of a sheet of the bag, at a distance to the left of its middle line: out along the bottom,
- *  back, and out again. */
-std::vector<Node> half_sheet(double offset)
+/** Half of a sheet of the bag, left of its middle line: out along the bottom, back, out again. */
+static std::vector<Node> half_sheet(double offset)
 {
   const int N = 200;
   const double out = WIDTH / 2 - 1.5 * GAP, back = 2.0 * GAP;
@@ -37,9 +34,8 @@ std::vector<Node> half_sheet(double offset)
   return line;
 }
 
-/** Nodes of a bag whose sides are folded twice, in order around it; each side has three panels of
- *  two layers. */
-std::vector<Node> folded()
+/** Nodes around a bag whose sides are folded twice; each side has three panels of two layers. */
+static std::vector<Node> folded()
 {
   auto line = half_sheet(-0.5 * GAP);
   const auto upper = half_sheet(0.5 * GAP);
@@ -61,13 +57,13 @@ std::vector<Node> folded()
   return x;
 }
 
-double edge(const std::vector<Node> &x, int i)
+static double edge(const std::vector<Node> &x, int i)
 {
   const int n = (int) x.size(), j = (i + 1) % n;
   return hypot(x[j][0] - x[i][0], x[j][1] - x[i][1]);
 }
 
-double area(const std::vector<Node> &x)
+static double area(const std::vector<Node> &x)
 {
   double sum = 0.0;
   for (std::size_t i = 0; i < x.size(); i++) {
@@ -78,7 +74,7 @@ double area(const std::vector<Node> &x)
 }
 
 /** The same lines in a circle. */
-std::vector<Node> in_a_circle(const std::vector<Node> &x)
+static std::vector<Node> in_a_circle(const std::vector<Node> &x)
 {
   double length = 0.0, s = 0.0;
   for (int i = 0; i < (int) x.size(); i++) length += edge(x, i);
@@ -91,14 +87,14 @@ std::vector<Node> in_a_circle(const std::vector<Node> &x)
   return to;
 }
 
-std::string mesh_of(const std::vector<Node> &x)
+static std::string mesh_of(const std::vector<Node> &x)
 {
   std::vector<std::vector<int>> lines;
   for (int i = 0; i < (int) x.size(); i++) lines.push_back({i, (i + 1) % (int) x.size()});
   return gmsh(1, x, lines);
 }
 
-std::string bag(const std::string &file, double k)
+static std::string bag(const std::string &file, double k)
 {
   return "units si\ndimension 2\nboundary f f p\nneighbor 0.008 bin\natom_style mpm\n"
          "region box block -0.5 0.5 -0.5 0.9 -0.01 0.01\ncreate_box 2 box\n"
@@ -111,7 +107,7 @@ std::string bag(const std::string &file, double k)
 }
 
 /** How many lines cross another one that is not near along the bag. */
-int crossings(Scene &run, int n)
+static int crossings(Scene &run, int n)
 {
   const auto s = run.gather();
   const auto turn = [&](int a, int b, int c) {
@@ -126,8 +122,6 @@ int crossings(Scene &run, int n)
     }
   return found;
 }
-
-}    // namespace
 
 // 4 kg/s of gas come in, and the drag of the air outside takes energy: work of the gas = what it
 // has lost, and = kinetic + stored + drag. Without contact (k = 0) layers pass each other
@@ -170,8 +164,7 @@ SERIAL_TEST(FoldedBag, Unfolds)
   }
 }
 
-// with a gas of constant temperature, the bag that was folded and one that was not come to rest
-// with the same volume and pressure, and round
+// at constant temperature, folded or not, the bag comes to rest with one volume and pressure, round
 SERIAL_TEST(FoldedBag, HasTheShapeOfOneThatWasNotFolded)
 {
   const auto x = folded();
@@ -245,15 +238,13 @@ SERIAL_TEST(FoldedBag, LargeStepsAreReported)
                   fraction));
     EXPECT_EQ(run.lmp->error->get_numwarn(), warnings);
   }
-  auto stiff = bag(file.name, 5e7);    // lines that resist being pushed together have no jump
-  const std::string option = " compression no";
-  stiff.replace(stiff.find(option), option.size(), "");
-  Scene run(stiff + "fix dt all mpm/dt 0.8\nrun 100\n");
+  // lines that resist being pushed together have no jump
+  Scene run(replaced(bag(file.name, 5e7), " compression no", "") +
+            "fix dt all mpm/dt 0.8\nrun 100\n");
   EXPECT_EQ(run.lmp->error->get_numwarn(), 0);
 }
 
-// pairs of nodes of the bag are wanted: there is no advice to exclude them where there are many
-// points
+// pairs of nodes of the bag are wanted: no advice to exclude them where there are many points
 SERIAL_TEST(FoldedBag, NeedsPairsOfItsNodes)
 {
   ScratchFile file("round.msh", mesh_of(in_a_circle(folded())));
@@ -269,30 +260,19 @@ SERIAL_TEST(FoldedBag, NeedsPairsOfItsNodes)
 // and in restart files, and not in the ledger of a lattice
 TEST(FoldedBag, StripThatYields)
 {
-  std::vector<Node> x;
-  std::vector<std::vector<int>> lines;
-  for (int i = 0; i <= 20; i++) {
-    x.push_back({0.01 * i - 0.1, 0.0, 0.0});
-    if (i) lines.push_back({i - 1, i});
-  }
-  ScratchFile file("strip.msh", gmsh(1, x, lines));
-  const std::string head =
-      "units si\ndimension 2\nboundary f f p\nneighbor 0.01 bin\natom_style mpm\n";
-  const std::string points = "region box block -0.5 0.5 -0.5 0.5 -0.01 0.01\ncreate_box 2 box\n"
-                             "create_points 1 mesh " +
-      file.name +
+  ScratchFile file("strip.msh", line(20, {-0.1, 0, 0}, {0.1, 0, 0}).text());
+  const std::string scene = plane("si", "f f", "-0.5 0.5 -0.5 0.5 -0.01 0.01", 2, 0.01) +
+      "create_points 1 mesh " + file.name +
       " thickness 0.001\ngroup strip type 1\nregion other block 0.2 0.3 0.2 0.3 INF INF\n"
       "group other type 2\nfix grid other mpm 0.05\ncreate_points 2 region other ppc 2 fix grid\n"
       "group other type 2\nvelocity all zero linear\nvariable v atom 1000*x*(type==1)\n"
-      "velocity strip set v_v 0 0\n";
-  const std::string rest =
+      "velocity strip set v_v 0 0\n"
       "fix steel all mpm/material density 1000 eos linear 2e8 strength j2 1e8 1e6\n"
       "fix e strip mpm/elements " +
       file.name +
       " thickness 0.001\nfix move strip nve\ncompute e all mpm/energy\ncompute ke strip ke\n"
       "thermo_style custom step c_ke c_e f_e[1] f_e[2] f_e[3]\ntimestep 2e-6\n";
-  const std::string again = "fix grid other mpm 0.05\n" + rest;
-  Continued run(head + points + rest + "run 0\n", 60, "neighbor 0.01 bin\n" + again, 40);
+  Continued run(scene + "run 0\n", 60, lines_again(scene), 40);
   const double mass = 0.2, E = 0.5 * mass * 1.0e6 * 0.04 / 12.0;
   const double kinetic = run.whole.evaluate("c_ke"), stored = run.whole.evaluate("f_e[1]"),
                spent = run.whole.evaluate("f_e[2]");

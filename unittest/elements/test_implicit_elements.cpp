@@ -7,17 +7,14 @@
 // Fix mpm/implicit with finite elements whose nodes are points.
 
 #include "elements/thin_testing.h"
-
-#include <map>
+#include "implicit/implicit_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Two bars of half span 1 that rise by a, of EA = 1e4: benchmark P6. Bars of neohookean have the
  *  force EA (l - 1/l)/2 for the stretch l, of corotated that of the benchmark, EA (l - 1). */
-std::string truss(double a, const ScratchFile &file, const std::string &law,
-                  const std::string &options)
+static std::string truss(double a, const ScratchFile &file, const std::string &law,
+                         const std::string &options)
 {
   return plane("si", "f f", "-1.5 1.5 -3 2", 1, 0.1) + "fix grid all mpm 0.1 " + options +
       "\ncreate_points 1 mesh " + file.name + " thickness 0.01\n" +
@@ -29,13 +26,17 @@ std::string truss(double a, const ScratchFile &file, const std::string &law,
       "thermo_style custom step c_w\nfix solve all mpm/implicit static\ntimestep 1.0\n";
 }
 
-std::string truss_mesh(double a)
+static std::string truss_mesh(double a)
 {
   return gmsh(1, {{-1.0, 0.0, 0.0}, {0.0, a, 0.0}, {1.0, 0.0, 0.0}}, {{0, 1}, {1, 2}});
 }
+static std::string ball(int divisions, double R)
+{
+  return octahedron(divisions, R).text();
+}
 
 /** Force that presses the apex down by w, over EA. */
-double bears(double a, double w, const std::string &law)
+static double bears(double a, double w, const std::string &law)
 {
   const double l0 = std::sqrt(1.0 + a * a), l = std::sqrt(1.0 + (a - w) * (a - w)),
                stretch = l / l0;
@@ -43,10 +44,7 @@ double bears(double a, double w, const std::string &law)
   return 2.0 * N * (a - w) / l;
 }
 
-}    // namespace
-
-// pushed down by a wall the force has its maximum; under a load that grows the truss jumps to the
-// other side
+// pushed by a wall the force has its maximum; under a load that grows the truss jumps
 SERIAL_TEST(Truss, SnapsThrough)
 {
   struct Case {
@@ -108,44 +106,13 @@ SERIAL_TEST(Truss, SnapsThrough)
     EXPECT_NEAR(bears(c.a, w, c.law) / (load * most), 1.0, 1e-5) << "on the other side";
     measured(name + "jump to, over that of the benchmark", w / c.jump);
     if (is_benchmark) { EXPECT_NEAR(w / c.jump, 1.0, 5e-3); }
-    EXPECT_GT(loaded.fix("solve")->compute_vector(9), 0.0);
+    EXPECT_GT(solved(loaded, 9), 0.0);
   }
-}
-
-namespace {
-
-/** An octahedron whose triangles are divided, on a sphere around 0. */
-std::string ball(int divisions, double R)
-{
-  std::vector<Node> x = {{R, 0, 0}, {-R, 0, 0}, {0, R, 0}, {0, -R, 0}, {0, 0, R}, {0, 0, -R}};
-  std::vector<std::vector<int>> f = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (int k = 0; k < divisions; k++) {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto key = std::make_pair(std::min(a, b), std::max(a, b));
-      if (const auto found = middles.find(key); found != middles.end()) return found->second;
-      Node m;
-      double square = 0.0;
-      for (int d = 0; d < 3; d++) square += std::pow(m[d] = x[a][d] + x[b][d], 2);
-      for (double &c : m) c *= R / std::sqrt(square);
-      x.push_back(m);
-      return middles[key] = (int) x.size() - 1;
-    };
-    std::vector<std::vector<int>> finer;
-    for (const auto &t : f) {
-      const int a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
-      for (const auto &part : {std::vector<int>{t[0], a, c}, {t[1], b, a}, {t[2], c, b}, {a, b, c}})
-        finer.push_back(part);
-    }
-    f.swap(finer);
-  }
-  return gmsh(2, x, f);
 }
 
 /** A balloon of neohookean whose pressure grows in five steps to that of a stretch of 1.2. */
-std::string balloon(const ScratchFile &file, const std::string &gas, const std::string &implicit,
-                    const std::string &more = "")
+static std::string balloon(const ScratchFile &file, const std::string &gas,
+                           const std::string &implicit, const std::string &more = "")
 {
   return MPM_TEST::box(3, -0.2, 0.2, 0.02, "frame total") +
       thin_body(file.name, "thickness 0.001", "neohookean 1e5 0.3", more) +
@@ -155,8 +122,6 @@ std::string balloon(const ScratchFile &file, const std::string &gas, const std::
       "compute most all reduce max v_r\nthermo_style custom step c_r c_most\ntimestep 1.0\n";
 }
 
-}    // namespace
-
 // the stretch of 1.2 of benchmark R2, in quadratically converging steps
 SERIAL_TEST(Balloon, IsBlownUp)
 {
@@ -164,7 +129,7 @@ SERIAL_TEST(Balloon, IsBlownUp)
   Scene run(balloon(file, "pressure v_p", "static"));
   for (int step = 1; step <= 5; step++) {
     run.commands("run 1\n");
-    EXPECT_LE(run.fix("solve")->compute_vector(0), 5.0);
+    EXPECT_LE(solved(run, 0), 5.0);
   }
   const double r = run.compute_scalar("r");
   EXPECT_NEAR(measured("stretch", (r / 0.1 - 1.0) / 0.2), 1.0, 0.025);

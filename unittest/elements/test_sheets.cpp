@@ -6,20 +6,17 @@
 // timeout: 300
 
 // Surfaces and lines without a lattice, moved by fix nve, which touch themselves by pair style
-// mpm/sheet: folds part, and layers do not pass each other. Values of sections R and V of the
-// benchmarks.
+// mpm/sheet: folds part, layers do not pass each other (benchmarks R and V).
 
 #include "elements/fix_mpm_elements.h"
 #include "elements/thin_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A box with one type of atoms and a body without a lattice. */
-std::string free_body(int dim, double low, double high, double skin, const std::string &file,
-                      const std::string &thin, const std::string &material,
-                      const std::string &more = "")
+static std::string free_body(int dim, double low, double high, double skin, const std::string &file,
+                             const std::string &thin, const std::string &material,
+                             const std::string &more = "")
 {
   const std::string range = strprintf("%g %g ", low, high);
   return MPM_TEST::box(dim, "si", dim == 2 ? "f f p" : "f f f",
@@ -27,9 +24,8 @@ std::string free_body(int dim, double low, double high, double skin, const std::
       thin_body(file, thin, material, more);
 }
 
-/** A strip of n x m squares with edges a, cut in triangles, folded to layers of n squares each with
- *  a gap between them. */
-std::string folded(int layers, int n, int m, double a, double gap)
+/** A strip of n x m squares with edges a, cut in triangles, folded to layers of n squares. */
+static std::string folded(int layers, int n, int m, double a, double gap)
 {
   std::vector<Node> line, x;
   for (int k = 0; k < layers; k++)
@@ -45,8 +41,6 @@ std::string folded(int layers, int n, int m, double a, double gap)
     }
   return gmsh(2, x, f);
 }
-
-}    // namespace
 
 // R3: a chain that is folded in the middle, and released at one end, which falls faster than
 // freely: its two arms hang beside each other, closer than any lattice would let them part. x/L of
@@ -127,8 +121,7 @@ SERIAL_TEST(Sheets, LayersDoNotPassEachOther)
   }
 }
 
-// nodes of a sheet with edges below the distance leave each other alone, also where it is curved;
-// those that a fold has brought there do not
+// nodes of a sheet with edges below the distance leave each other alone, but for folds
 SERIAL_TEST(Sheets, NearNodesDoNotTouch)
 {
   ScratchFile file("strip.msh", folded(1, 8, 3, 0.05, 0.0));
@@ -155,8 +148,7 @@ SERIAL_TEST(Sheets, NearNodesDoNotTouch)
 }
 
 // V4: a bag between two plates, of lines that hardly stretch, with a gas of 1.1e5 against 1e5
-// outside: the force on a plate when half of its height is left, with the temperature or the
-// entropy of the gas kept
+// outside: the force on a plate at half of the height, with constant temperature or entropy
 SERIAL_TEST(Sheets, BagBetweenPlates)
 {
   const int n = 120;
@@ -181,29 +173,24 @@ SERIAL_TEST(Sheets, BagBetweenPlates)
 
 TEST(Sheets, RanksAndRestart)
 {
-  ScratchFile file("ranks.msh", folded(3, 6, 3, 0.05, 0.045));
-  const std::string mine = file.name;
-  ScratchFile own("serial.msh", folded(3, 6, 3, 0.05, 0.045));
-  const std::string head = MPM_TEST::box(3, "si", "f f f", "-0.3 0.6 -0.3 0.6 -0.3 0.6", 1, 0.02) +
-      "comm_modify vel yes\n";
-  const std::string points = "create_points 1 mesh " + mine + " thickness 0.001\n";
+  const ScratchFile file("ranks.msh", folded(3, 6, 3, 0.05, 0.045)),
+      own("serial.msh", folded(3, 6, 3, 0.05, 0.045));
   for (const std::string faces : {"no", "yes"}) {
-    const std::string rest = "fix m all mpm/material density 1000 neohookean 1e5 0.3\n"
-                             "fix e all mpm/elements " +
-        mine + " thickness 0.001\npair_style mpm/sheet 0.045 faces " + faces +
-        "\npair_coeff * * 40\n" + strprintf("group rest id > %d\nfix move rest nve\n", 7 * 4) +
+    const std::string pair = "pair_style mpm/sheet 0.045 faces " + faces + "\npair_coeff * * 40\n";
+    const std::string start =
+        free_body(3, -0.3, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+        "comm_modify vel yes\n" + pair +
+        strprintf("group rest id > %d\nfix move rest nve\n", 7 * 4) +
         "fix g all gravity 9.81 vector 0 0.3 -1\ntimestep 2e-4\n";
-    const std::string start = head + points + rest;
-    Scene serial(replaced(start, mine, own.name) + "run 200\n", MPI_COMM_SELF);
-    Continued run(start, 100, "neighbor 0.02 bin\ncomm_modify vel yes\n" + rest, 100);
+    Scene serial(replaced(start, file.name, own.name) + "run 200\n", MPI_COMM_SELF);
+    Continued run(start, 100, lines_again(start) + pair, 100);
     const auto state = run.whole.gather();
     EXPECT_LT(measured("ranks", difference(serial.gather(), state)), 1e-9);
     EXPECT_TRUE(identical(state, run.again.gather()));
   }
 }
 
-// layers in the mesh that are closer than the distance are told, with the energy that pushes them
-// apart: once, and not after a restart
+// layers in the mesh that are closer than the distance are told once, and not after a restart
 TEST(Sheets, WarnsOfLayersThatAreTooClose)
 {
   const auto warnings = [&](double gap, double k, bool again) {
@@ -403,8 +390,7 @@ TEST(Sheets, FacesHoldNodes)
   EXPECT_LT(std::fabs(change[1]), 0.003);
   EXPECT_NEAR(change[0] / change[1], 4.0, 1.0);
 
-  // a stiffness that lets nodes go through by less than the distance and the skin: they come back,
-  // and all of the sheets is apart again, as is told
+  // a low stiffness lets nodes go through by less than the distance and the skin: they come back
 
   const std::string weak = scene(20.0, dt, "faces yes", 0.1);
   EXPECT_EQ(lines_that_say(weak + "run 60\nrun 0\n", words).size(), 1u);

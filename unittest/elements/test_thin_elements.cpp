@@ -5,118 +5,57 @@
 // mpi: 1 4
 // timeout: 600
 
-// Membranes, strips, and cables of fix mpm/elements, and the gas of fix mpm/airbag. Values of
-// sections R and V of the benchmarks.
+// Membranes, strips, and cables of fix mpm/elements, gas of fix mpm/airbag (benchmarks R and V).
 
 #include "elements/fix_mpm_elements.h"
 #include "elements/thin_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-/** A sphere of radius R: octahedron whose triangles are divided. mixed: every other triangle goes
- *  around the other way. */
-std::string sphere(int divisions, double R, bool mixed = false,
-                   const std::vector<Node> &centers = {{0.0, 0.0, 0.0}})
+/** A sphere of radius R. mixed: every other triangle goes around the other way. */
+static std::string sphere(int divisions, double R, bool mixed = false,
+                          const std::vector<Node> &centers = {{0.0, 0.0, 0.0}})
 {
-  std::vector<Node> x = {{R, 0, 0}, {-R, 0, 0}, {0, R, 0}, {0, -R, 0}, {0, 0, R}, {0, 0, -R}};
-  std::vector<std::vector<int>> f = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (int k = 0; k < divisions; k++) {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto key = std::make_pair(std::min(a, b), std::max(a, b));
-      const auto found = middles.find(key);
-      if (found != middles.end()) return found->second;
-      Node m;
-      double square = 0.0;
-      for (int d = 0; d < 3; d++) square += pow(m[d] = x[a][d] + x[b][d], 2);
-      for (double &c : m) c *= R / sqrt(square);
-      x.push_back(m);
-      return middles[key] = (int) x.size() - 1;
-    };
-    std::vector<std::vector<int>> finer;
-    for (const auto &t : f) {
-      const int a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
-      for (const auto &part : {std::vector<int>{t[0], a, c}, {t[1], b, a}, {t[2], c, b}, {a, b, c}})
-        finer.push_back(part);
-    }
-    f.swap(finer);
-  }
-  for (std::size_t k = 0; mixed && k < f.size(); k += 2) std::swap(f[k][0], f[k][1]);
-  std::vector<Node> all;
-  std::vector<std::vector<int>> faces;
+  ThinMesh one = octahedron(divisions, R), all;
+  for (std::size_t k = 0; mixed && k < one.elements.size(); k += 2)
+    std::swap(one.elements[k][0], one.elements[k][1]);
   for (const Node &c : centers) {
-    const int first = (int) all.size();
-    for (const auto &t : f) faces.push_back({first + t[0], first + t[1], first + t[2]});
-    for (const Node &p : x) all.push_back({c[0] + p[0], c[1] + p[1], c[2] + p[2]});
+    const int first = (int) all.x.size();
+    for (const auto &t : one.elements)
+      all.elements.push_back({first + t[0], first + t[1], first + t[2]});
+    for (const Node &p : one.x) all.x.push_back({c[0] + p[0], c[1] + p[1], c[2] + p[2]});
   }
-  return gmsh(2, all, faces);
+  return all.text();
 }
 
 /** Two disks of triangles in rings, at z = 1e-4 and -1e-4, with one rim, at z = 0. */
-std::string two_disks(int rings, double radius)
+static std::string two_disks(int rings, double radius)
 {
-  std::vector<Node> x;
-  std::vector<std::vector<int>> f;
-  std::vector<int> rim;
-  for (const int side : {1, -1}) {
-    const int first = (int) x.size();
-    const auto node = [&](int ring, int k) {
-      if (ring == rings && side < 0) return rim[k % (6 * ring)];
-      return first + (ring == 0 ? 0 : 1 + 3 * ring * (ring - 1) + k % (6 * ring));
-    };
-    x.push_back({0.0, 0.0, 1e-4 * side});
-    for (int r = 1; r <= rings; r++)
-      for (int k = 0; k < 6 * r; k++) {
-        const double angle = 2.0 * PI * k / (6 * r), R = radius * r / rings;
-        if (r < rings || side > 0)
-          x.push_back({R * cos(angle), R * sin(angle), r < rings ? 1e-4 * side : 0.0});
-        if (r == rings && side > 0) rim.push_back((int) x.size() - 1);
-      }
-    for (int r = 1; r <= rings; r++)
-      for (int k = 0; k < 6 * r; k++) {
-        const int part = k / r, at = k % r, inner = part * (r - 1) + at;
-        std::vector<int> t = {node(r, k), node(r, k + 1), node(r - 1, inner)};
-        if (side < 0) std::swap(t[0], t[1]);
-        f.push_back(t);
-        if (at == 0) continue;
-        t = {node(r, k), node(r - 1, inner), node(r - 1, inner - 1)};
-        if (side < 0) std::swap(t[0], t[1]);
-        f.push_back(t);
-      }
+  ThinMesh disk = rings_of_triangles(rings, radius), all = disk;
+  const int inner = 1 + 3 * rings * (rings - 1), n = (int) disk.x.size();    // rim: [inner, n)
+  for (int i = 0; i < inner; i++) {
+    all.x[i][2] = 1e-4;
+    all.x.push_back({disk.x[i][0], disk.x[i][1], -1e-4});
   }
-  return gmsh(2, x, f);
+  for (auto t : disk.elements) {
+    for (int &node : t)
+      if (node < inner) node += n;
+    all.elements.push_back({t[1], t[0], t[2]});
+  }
+  return all.text();
 }
 
-/** A disk of triangles in rings, in a plane normal to z, or to that axis turned about y by an
- *  angle. */
-std::string disk(int rings, double radius, const Node &center, double angle = 0.0)
+/** A disk of triangles in rings, normal to z, or to that axis turned about y by an angle. */
+static std::string disk(int rings, double radius, const Node &center, double angle = 0.0)
 {
-  std::vector<Node> x(1, center);
-  std::vector<std::vector<int>> f;
-  const auto node = [](int ring, int k) {
-    return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1) + k % (6 * ring);
-  };
-  for (int r = 1; r <= rings; r++)
-    for (int k = 0; k < 6 * r; k++) {
-      const double at_rim = 2.0 * PI * k / (6 * r), R = radius * r / rings;
-      x.push_back({center[0] + R * cos(at_rim), center[1] + R * sin(at_rim), center[2]});
-      const int side = k / r, at = k % r, inner = side * (r - 1) + at;
-      f.push_back({node(r, k), node(r, k + 1), node(r - 1, inner)});
-      if (at > 0) f.push_back({node(r, k), node(r - 1, inner), node(r - 1, inner - 1)});
-    }
-  for (Node &p : x) {
-    const double along = p[0] - center[0];
-    p[0] = center[0] + along * cos(angle);
-    p[2] -= along * sin(angle);
-  }
-  return gmsh(2, x, f);
+  ThinMesh mesh = rings_of_triangles(rings, radius);
+  for (Node &p : mesh.x)
+    p = {center[0] + p[0] * cos(angle), center[1] + p[1], center[2] - p[0] * sin(angle)};
+  return mesh.text();
 }
 
 /** Mean distance of points from 0. */
-double radius(Scene &run)
+static double radius(Scene &run)
 {
   double sum = 0.0;
   const auto all = run.gather();
@@ -125,15 +64,13 @@ double radius(Scene &run)
 }
 
 /** A soft balloon, with or without a lattice. */
-std::string balloon_under_pressure(const std::string &file, bool lattice)
+static std::string balloon_under_pressure(const std::string &file, bool lattice)
 {
   return (lattice ? box(3, -0.3, 0.3, 0.05, "transfer flip 0.99")
                   : MPM_TEST::box(3, "si", "f f f", "-0.3 0.3 -0.3 0.3 -0.3 0.3", 1, 0.02)) +
       thin_body(file, "thickness 0.001", "neohookean 1e5 0.3", "compression no") +
       (lattice ? "" : "fix move all nve\n");
 }
-
-}    // namespace
 
 // Forces are minus the gradient of the energy at large motions of all nodes, with and without
 // compression, and with a gas inside, whose work is p dV
@@ -194,8 +131,7 @@ TEST(ThinElements, ForcesAreTheGradientOfEnergy)
 
 // A woven sheet pulled along its bias, lying anywhere in space: pin-jointed yarns turn towards each
 // other, which is the deformation of a picture frame. Its energy is G gamma^2/2, and the forces on
-// its end are M sqrt(2) sin(theta/2) per area when its sides are held; yarns that are longer by 1 %
-// add their own
+// its end are M sqrt(2) sin(theta/2) per area when its sides are held; yarns add theirs
 TEST(ThinElements, WovenTrellis)
 {
   const double l = 0.3, t = 0.01, E = 2e6, G = 50.0, half = 0.6, gamma = 0.5 * PI - 2.0 * half;
@@ -233,8 +169,7 @@ TEST(ThinElements, WovenTrellis)
     }
 }
 
-// a cable that hangs between two clamps: elastic catenary (H.M. Irvine, Cable Structures (1981)),
-// sag .39978 for EA/W = 102
+// a cable between two clamps (H.M. Irvine, Cable Structures (1981)), sag .39978 for EA/W = 102
 SERIAL_TEST(ThinElements, Catenary)
 {
   LONG_CASE();
@@ -258,17 +193,12 @@ SERIAL_TEST(ThinElements, Catenary)
   EXPECT_LT(std::fabs(sag[1] - 0.39978), 0.6 * std::fabs(sag[0] - 0.39978));
 }
 
-// the lowest vibration of a chain that hangs from a clamp (R3): 1.2024128 sqrt(g/L). It is
-// stretched by its weight first, and then pushed
+// the lowest vibration of a chain that hangs from a clamp (R3): 1.2024128 sqrt(g/L)
 SERIAL_TEST(ThinElements, HangingChain)
 {
   LONG_CASE();
   const double h = 0.04;
-  std::vector<Node> x;
-  std::vector<std::vector<int>> lines;
-  for (int i = 0; i <= 50; i++) x.push_back({0.0, -i / 50.0, 0.0});
-  for (int i = 0; i < 50; i++) lines.push_back({i, i + 1});
-  ScratchFile file("chain.msh", gmsh(1, x, lines));
+  ScratchFile file("chain.msh", line(50, {0, 0, 0}, {0, -1, 0}).text());
   Scene run(
       MPM_TEST::box(2, "si", "f f f", "-0.4 0.4 -1.2 0.16", 1, 0.5 * h) +
       "fix grid all mpm 0.04 transfer flip 1.0 gain ignore\n" +
@@ -280,30 +210,14 @@ SERIAL_TEST(ThinElements, HangingChain)
       "variable v atom 0.05*v_q\nvelocity all zero linear\nvelocity all set v_v NULL NULL\n"
       "variable w atom vx*v_q\ncompute w all reduce ave v_w\nthermo_style custom step c_w\nrun "
       "0\n");
-  const double start = run.evaluate("time");
-  double before = run.evaluate("c_w"), from = start, quarter = 0.0;
-  while (quarter == 0.0 && from < start + 1.0) {
-    run.commands("run 50 post no\n");
-    const double now = run.evaluate("c_w"), time = run.evaluate("time");
-    if (now <= 0.0) quarter = from + (time - from) * before / (before - now) - start;
-    before = now;
-    from = time;
-  }
+  const double start = run.evaluate("time"), quarter = time_of_zero(run, "c_w", 50) - start;
   EXPECT_NEAR(measured("frequency", 0.5 * PI / quarter / sqrt(9.81)) / 1.2024128, 1.0, 0.01);
 }
 
-// a block that falls on a strip, both on the lattice: weights by volume and gap hold it, as the log
-// tells where it passes through
+// a block falls on a strip, both on the lattice: weights by volume and gap hold it
 SERIAL_TEST(Sheet, HoldsABlock)
 {
-  const int n = 16;
-  std::vector<Node> x;
-  std::vector<std::vector<int>> lines;
-  for (int i = 0; i <= n; i++) {
-    x.push_back({-0.4 + 0.8 * i / n, 0.0, 0.0});
-    if (i < n) lines.push_back({i, i + 1});
-  }
-  ScratchFile file("strip.msh", gmsh(1, x, lines));
+  ScratchFile file("strip.msh", line(16, {-0.4, 0, 0}, {0.4, 0, 0}).text());
   const auto falls = [&](const std::string &contact) {
     return MPM_TEST::box(2, "si", "f f p", "-0.6 0.6 -0.5 0.6 -0.1 0.1", 2, 0.02) +
         "group strip empty\ngroup block empty\nfix a strip mpm 0.05 transfer flip 0.97\n"
@@ -330,12 +244,10 @@ SERIAL_TEST(Sheet, HoldsABlock)
                        "pass through what is so thin");
     EXPECT_EQ(said.size(), times) << contact;
   }
-  auto from_far = falls("");
-  const std::string place = "0.03 0.23";
-  from_far.replace(from_far.find(place), place.size(), "0.35 0.55");
-  EXPECT_EQ(
-      lines_that_say(from_far + "timestep 1e-4\nrun 1\n", "pass through what is so thin").size(),
-      1u);
+  EXPECT_EQ(lines_that_say(replaced(falls(""), "0.03 0.23", "0.35 0.55") + "timestep 1e-4\nrun 1\n",
+                           "pass through what is so thin")
+                .size(),
+            1u);
 }
 
 // a strip that falls on another one goes through it, at once without nodes that are full (gap yes)
@@ -343,17 +255,9 @@ SERIAL_TEST(Sheet, HoldsABlock)
 // are far from each other when the run starts
 SERIAL_TEST(Sheet, DoesNotHoldAStrip)
 {
-  const auto strip = [](double x0, double x1, double y, int n) {
-    std::vector<Node> x;
-    std::vector<std::vector<int>> lines;
-    for (int i = 0; i <= n; i++) {
-      x.push_back({x0 + (x1 - x0) * i / n, y, 0.0});
-      if (i < n) lines.push_back({i, i + 1});
-    }
-    return gmsh(1, x, lines);
-  };
-  ScratchFile low("low.msh", strip(-0.4, 0.4, 0.0, 16)),
-      near("near.msh", strip(-0.15, 0.15, 0.1, 6)), far("far.msh", strip(-0.15, 0.15, 0.5, 6));
+  ScratchFile low("low.msh", line(16, {-0.4, 0, 0}, {0.4, 0, 0}).text()),
+      near("near.msh", line(6, {-0.15, 0.1, 0}, {0.15, 0.1, 0}).text()),
+      far("far.msh", line(6, {-0.15, 0.5, 0}, {0.15, 0.5, 0}).text());
   const auto falls = [&](const std::string &mesh, double thick, const std::string &contact) {
     const std::string size = strprintf(" thickness %g", thick);
     return MPM_TEST::box(2, "si", "f f p", "-0.6 0.6 -0.6 0.6 -0.1 0.1", 2, 0.02) +
@@ -367,10 +271,8 @@ SERIAL_TEST(Sheet, DoesNotHoldAStrip)
         "in stick\nfix g all gravity 9.81 vector 0 -1 0\nfix v all viscous 0.1\n";
   };
   const auto above = [&](const std::string &transfer, const std::string &contact) {
-    std::string script = falls(near.name, 0.01, contact);
-    for (std::size_t at; (at = script.find("flip 0.97")) != std::string::npos;)
-      script.replace(at, 9, transfer);
-    Scene run(script + "fix dt all mpm/dt 0.4 until 0.3\nrun 5000\n");
+    Scene run(replaced(falls(near.name, 0.01, contact), "flip 0.97", transfer) +
+              "fix dt all mpm/dt 0.4 until 0.3\nrun 5000\n");
     return measured("above", run.evaluate("bound(b,ymin)-bound(a,ymin)"));
   };
   for (const std::string normal : {"colinear", "volume"}) {
@@ -455,30 +357,19 @@ SERIAL_TEST(Bending, FreeVibrations)
         "\nfix dt all mpm/dt 0.5\nvariable w atom " + (dim == 2 ? "vy" : "vz") +
         "*v_q\ncompute w all reduce ave v_w\nthermo_style custom step c_w\nrun 0\n");
     // to the first time without velocity, a quarter of a period
-    double before = run.evaluate("c_w"), from = 0.0;
-    for (int k = 0; k < 2000; k++) {
-      run.commands("run 20 post no\n");
-      const double now = run.evaluate("c_w"), time = run.evaluate("time");
-      if (now <= 0.0) return PI / 2.0 / (from + (time - from) * before / (before - now)) / expected;
-      before = now;
-      from = time;
-    }
-    return 0.0;
+    return PI / 2.0 / time_of_zero(run, "c_w", 20) / expected;
   };
   const double bl = 4.73004074, ratio = 0.982502215;
   const std::string s = strprintf("(x+0.5)*%.9g", bl),
                     mode = strprintf(
                         "0.5*(exp(%s)+exp(-%s))+cos(%s)-%.9g*(0.5*(exp(%s)-exp(-%s))+sin(%s))",
                         s.c_str(), s.c_str(), s.c_str(), ratio, s.c_str(), s.c_str(), s.c_str());
-  const double beam = 22.37329 * t * sqrt(E / (12.0 * rho));
-  std::vector<Node> x;
-  std::vector<std::vector<int>> lines;
-  for (int i = 0; i <= 40; i++) x.push_back({i / 40.0 - 0.5, 0.003, 0.0});
-  for (int i = 0; i < 40; i++) lines.push_back({i, i + 1});
-  const double coarse =
-      measured("beam", frequency(2, 0.3, 0.05, gmsh(1, x, lines), mode, beam / sqrt(0.91)));
-  const double fine =
-      measured("beam", frequency(2, 0.3, 0.025, gmsh(1, x, lines), mode, beam / sqrt(0.91)));
+  const auto free_beam = [&](double h) {
+    return measured("beam",
+                    frequency(2, 0.3, h, line(40, {-0.5, 0.003, 0}, {0.5, 0.003, 0}).text(), mode,
+                              22.37329 * t * sqrt(E / (12.0 * rho)) / sqrt(0.91)));
+  };
+  const double coarse = free_beam(0.05), fine = free_beam(0.025);
   EXPECT_NEAR(fine, 1.0, 0.02);
   EXPECT_NEAR((1.0 - coarse) / (1.0 - fine), 4.0, 1.0);
 
@@ -494,8 +385,7 @@ SERIAL_TEST(Bending, FreeVibrations)
   EXPECT_LT(1.0 - fine_plate, 0.5 * (1.0 - coarse_plate));
 }
 
-// a clamped circular membrane under pressure (R1, Hencky): the region that clamps it begins 0.8
-// cells before the rim, as the manual advises
+// a clamped circular membrane under pressure (R1, Hencky), clamped from 0.8 cells before the rim
 SERIAL_TEST(ThinElements, HenckysMembrane)
 {
   LONG_CASE();
@@ -545,8 +435,7 @@ SERIAL_TEST(ThinElements, HenckysMembraneAtAnyAngle)
   EXPECT_NEAR(measured("exponent", log(high[1] / high[0]) / log(8.0)), 1.0 / 3.0, 0.01);
 }
 
-// balloons (R2, V1): a stretch of 1.2 by a given pressure, and what a gas at higher pressure does,
-// of either kind
+// balloons (R2, V1): a stretch of 1.2 by a given pressure, and by either kind of gas
 SERIAL_TEST(Airbag, Balloons)
 {
   ScratchFile file("ball.msh", sphere(4, 0.1));
@@ -580,22 +469,19 @@ SERIAL_TEST(Airbag, Balloons)
 
 // a balloon of 512 triangles that stand for the curved surface through their nodes (V1, gas of 3000
 // Pa and nothing outside): at rest, the pressure of a neohookean balloon of the stretch that it
-// has, for which that of the triangles alone is 1 % off; set free it keeps its energy, with forces
-// whose sum is zero
+// has, for which that of the triangles alone is 1 % off; set free it keeps its energy
 SERIAL_TEST(Airbag, CurvedBalloon)
 {
   ScratchFile file("ball.msh", sphere(3, 0.1));
   double off[2];
   for (const bool curved : {false, true}) {
-    Scene run("units si\nboundary f f f\natom_style mpm\natom_modify map array\n"
-              "region box block -0.3 0.3 -0.3 0.3 -0.3 0.3\ncreate_box 1 box\nneighbor 0.05 bin\n" +
+    Scene run(with_map(MPM_TEST::box(3, "si", "f f f", "-0.3 0.3 -0.3 0.3 -0.3 0.3", 1, 0.05)) +
               thin_body(file.name, "thickness 0.001", "neohookean 1e5 0.3",
                         curved ? "curved yes" : "curved no") +
               "fix gas all mpm/airbag e gas 1100 1.0\nfix dt all mpm/dt 0.5\nfix move all nve\n"
               "fix damp all viscous $(mass(all)/count(all)*200)\n"
               "thermo_style custom step f_gas ke f_e[1]\nthermo_modify norm no\nrun 2000\n");
-    // p = 2 t sigma/R of a thin sphere, by its free energy: stretches s, s, and q across, where
-    // there is no stress
+    // p = 2 t sigma/R of a thin sphere by its energy: stretches s, s, and q across, without stress
     const double E = 1e5, nu = 0.3, mu = E / 2.6, lambda = E * nu / (1.3 * 0.4),
                  s = radius(run) / 0.1;
     double q = 1.0;
@@ -742,16 +628,18 @@ SERIAL_TEST(Airbag, GasAsPoints)
   }
 }
 
-// gas through a vent (V2) of a bag so heavy that it stays as it is, without anything outside; then
-// what comes in
+// gas through a vent (V2) of a heavy bag, without anything outside; then what comes in
 SERIAL_TEST(Airbag, VentAndInflow)
 {
   ScratchFile file("ball.msh", sphere(2, 0.5));
   const double R = 287.0, T = 300.0, area = 1e-3, tau = 1.0, gamma = 1.4;
-  Scene run(box(3, -1.0, 1.0, 0.2, "") +
-            thin_body(file.name, "thickness 1e5", "neohookean 1e5 0.3") +
-            strprintf("fix b all mpm/airbag e gas 1e5 1.4 temperature %g %g vent %g 0.8\nrun 0\n",
-                      T, R, area));
+  const auto bag = [&](const std::string &gas) {
+    return box(3, -1.0, 1.0, 0.2, "") +
+        thin_body(file.name, "thickness 1e5", "neohookean 1e5 0.3") +
+        "variable rate equal 2*ramp(1,1)\nfix b all mpm/airbag e gas " +
+        replaced(gas, "OF_AIR", strprintf("temperature %g %g", T, R)) + "\n";
+  };
+  Scene run(bag(strprintf("1e5 1.4 OF_AIR vent %g 0.8", area)) + "run 0\n");
   const double V = run.fix("b")->compute_vector(1), mass = run.fix("b")->compute_vector(3);
   EXPECT_NEAR(mass, 1e5 * V / (R * T), 1e-9 * mass);
   const double end = tau * V / (0.8 * 0.578704 * area * sqrt(gamma * R * T));
@@ -764,33 +652,21 @@ SERIAL_TEST(Airbag, VentAndInflow)
   EXPECT_NEAR(entry(3) / mass / 0.401878, 1.0, 0.005);
   EXPECT_NEAR((entry(3) + entry(6)) / mass, 1.0, 1e-12);
 
-  Scene fill(
-      box(3, -1.0, 1.0, 0.2, "") + thin_body(file.name, "thickness 1e5", "neohookean 1e5 0.3") +
-      "variable rate equal 2*ramp(1,1)\n" +
-      strprintf("fix b all mpm/airbag e gas 1e5 1.4 temperature %g %g inflow v_rate 300\n", T, R) +
-      strprintf("timestep %.15g\nrun 100\n", mass / 200.0));
+  Scene fill(bag("1e5 1.4 OF_AIR inflow v_rate 300") +
+             strprintf("timestep %.15g\nrun 100\n", mass / 200.0));
   EXPECT_NEAR(fill.fix("b")->compute_vector(3) / mass, 2.0, 1e-9);
   EXPECT_NEAR(fill.fix("b")->compute_vector(4) / T, 1.2, 1e-3);
   EXPECT_NEAR(fill.fix("b")->compute_vector(5) / mass, 1.0, 1e-9);
 
   // a bag with half of the pressure outside sucks gas through the vent, which is open from the
   // start; the work of the gas outside makes it warmer
-  Scene suck(
-      box(3, -1.0, 1.0, 0.2, "") + thin_body(file.name, "thickness 1e5", "neohookean 1e5 0.3") +
-      strprintf("fix b all mpm/airbag e gas 5e4 1.4 outside 1e5 temperature %g %g vent 1e-2 1\n", T,
-                R) +
-      "timestep 1e-4\nrun 4000\n");
+  Scene suck(bag("5e4 1.4 outside 1e5 OF_AIR vent 1e-2 1") + "timestep 1e-4\nrun 4000\n");
   EXPECT_NEAR(measured("pressure", suck.fix("b")->compute_vector(0) / 1e5), 1.0, 1e-3);
   EXPECT_NEAR(suck.fix("b")->compute_vector(5) / mass, 0.5 / gamma, 1e-3);
   EXPECT_NEAR(suck.fix("b")->compute_vector(4) / T, 2.0 * gamma / (gamma + 1.0), 1e-3);
 
-  // a vent so wide that a step could let all of the gas through: the bag has the pressure outside
-  // at once, and keeps it
-  Scene wide(
-      box(3, -1.0, 1.0, 0.2, "") + thin_body(file.name, "thickness 1e5", "neohookean 1e5 0.3") +
-      strprintf("fix b all mpm/airbag e gas 1.2e5 1.4 outside 1e5 temperature %g %g vent 10 1\n", T,
-                R) +
-      "timestep 1e-4\nrun 10\n");
+  // a vent so wide that a step could let all gas through: the bag has the pressure outside at once
+  Scene wide(bag("1.2e5 1.4 outside 1e5 OF_AIR vent 10 1") + "timestep 1e-4\nrun 10\n");
   const double held = wide.fix("b")->compute_vector(3);
   double most = 0.0;
   for (int k = 0; k < 20; k++) {
@@ -801,8 +677,7 @@ SERIAL_TEST(Airbag, VentAndInflow)
   EXPECT_NEAR(wide.fix("b")->compute_vector(3) / held, 1.0, 1e-3);
 }
 
-// the summary of a run has the time step over the limit of elements, not over that of a lattice
-// whose nodes have no waves of their own
+// the summary of a run has the time step over the limit of elements, not of the lattice
 SERIAL_TEST(Airbag, SummaryTellsTheLimit)
 {
   const ScratchFile file("ball.msh", sphere(2, 0.1));
@@ -853,8 +728,7 @@ SERIAL_TEST(Airbag, TimeStepAboveThatOfTheGas)
   }
 }
 
-// a bag that lies across periodic faces from the start holds what it holds elsewhere, and keeps it
-// while it moves
+// a bag that lies across periodic faces holds what it holds elsewhere, and keeps it as it moves
 TEST(Airbag, AcrossPeriodicFaces)
 {
   ScratchFile file("ball.msh", sphere(2, 0.1));
@@ -899,19 +773,13 @@ TEST(ThinElements, RanksAndRestart)
   for (const auto &c : cases) {
     SCOPED_TRACE(c.thin);
     ScratchFile file("ranks.msh", c.mesh);
-    const std::string head = box(c.dim, -0.6, 0.6, 0.05, "transfer flip 0.99");
-    const std::string material = std::string("fix m all mpm/material density 1000 ") + c.law + "\n";
-    const std::string points =
-        std::string("create_points 1 mesh ") + file.name + " " + c.thin + "\n";
-    const std::string elements =
-        std::string("fix e all mpm/elements ") + file.name + " " + c.thin + " " + c.options + "\n";
-    const std::string rest = material + elements + c.more + "timestep 0.0002\n";
     ScratchFile own("serial.msh", c.mesh);
-    const std::string start = head + points +
-        "velocity all set 0.3 0.2 0\nvelocity all ramp vx 0.0 2.0 x 0.0 0.5 sum yes\n" + rest;
+    const std::string start = box(c.dim, -0.6, 0.6, 0.05, "transfer flip 0.99") +
+        thin_body(file.name, c.thin, c.law, c.options) + c.more +
+        "velocity all set 0.3 0.2 0\nvelocity all ramp vx 0.0 2.0 x 0.0 0.5 sum yes\n"
+        "timestep 0.0002\n";
     Scene serial(replaced(start, file.name, own.name) + "run 200\n", MPI_COMM_SELF);
-    Continued run(start, 100, "neighbor 0.025 bin\n" + head.substr(head.find("fix grid")) + rest,
-                  100);
+    Continued run(start, 100, lines_again(start), 100);
     const auto state = run.whole.gather();
     EXPECT_LT(measured("ranks", difference(serial.gather(), state)), 1e-9);
     EXPECT_TRUE(identical(state, run.again.gather()));

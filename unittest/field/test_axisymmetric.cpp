@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -8,7 +8,7 @@
 // vibrations of a cylinder and of a sphere), conservation, and what is refused. Ranks and restarts
 // are in test_parallel.cpp and test_restart.cpp, the Taylor bar in test_taylor_bar.py.
 
-#include "mpm_lammps.h"
+#include "elements/thin_testing.h"
 
 using namespace MPM_TEST;
 
@@ -32,12 +32,13 @@ static std::string points(const std::string &region, const std::string &material
 TEST(Axisymmetric, VolumesAreThoseOfRings)
 {
   Scene run(start(6, 6, 0.5, "") +
-            "region body block 1 3 1 5 INF INF\ncreate_points 1 region body ppc 3\n"
-            "fix m all mpm/material density 2.0 neohookean 10.0 0.3\nrun 0\n");
+            replaced(points("block 1 3 1 5 INF INF", "density 2.0 neohookean 10.0 0.3"), "ppc 2",
+                     "ppc 3") +
+            "run 0\n");
   EXPECT_NEAR(run.sums().mass, 2.0 * PI * (9.0 - 1.0) * 4.0, 1e-11);
 }
 
-// points that were there before the fix have areas in the place of volumes: a wrong number of old, which now has a warning
+// points that were there before the fix have areas in the place of volumes: there is a warning
 SERIAL_TEST(Axisymmetric, PointsOfThePlaneAreTold)
 {
   const std::string fix =
@@ -54,11 +55,8 @@ SERIAL_TEST(Axisymmetric, PointsOfThePlaneAreTold)
   }
 }
 
-/* ----------------------------------------------------------------------
-   v = (a r, b z) is reproduced everywhere, at the axis and at surfaces: strain and stress are
-   uniform to round-off, and equal around the axis and across it
-------------------------------------------------------------------------- */
-
+// v = (a r, b z) is reproduced everywhere, at the axis and at surfaces: strain and stress are
+// uniform to round-off, and equal around the axis and across it
 TEST(Axisymmetric, UniformExpansionIsExact)
 {
   const double a = 0.3, b = -0.2, dt = 0.01;
@@ -128,12 +126,9 @@ PARAMETER_TEST(AxisymmetricStrain, IsThatOfTheRadius, const char *,
   EXPECT_GT(strain, 0.05) << options;
 }
 
-/* ----------------------------------------------------------------------
-   a body under uniform pressure in a closed vessel: no forces inside, as the sum over points of r dN/dr + N is
-   zero for functions that are wholly inside. Those that the axis cuts have the error of the midpoint rule
-   if r N is a cubic of r
-------------------------------------------------------------------------- */
-
+// a body under uniform pressure in a closed vessel: no forces inside, as the sum over points of r
+// dN/dr + N is zero for functions that are wholly inside. Those that the axis cuts have the error
+// of the midpoint rule if r N is a cubic of r
 struct Spurious {    // acceleration times h density/pressure
   double at_axis, inside;
 };
@@ -141,8 +136,7 @@ struct Spurious {    // acceleration times h density/pressure
 static Spurious spurious(const std::string &options)
 {
   Scene run(start(10, 10, 1.0, options) +
-            "create_points 1 box ppc 2\n"
-            "fix m all mpm/material density 1.0 linear 1.0 0.0\n"
+            "create_points 1 box ppc 2\nfix m all mpm/material density 1.0 linear 1.0 0.0\n"
             "fix vessel all mpm/boundary xhi ylo yhi slip\ntimestep 0.01\n");
   for (int i = 0; i < run.n(); i++)
     for (int c = 0; c < 3; c++) run.points().tau[i][c] = -1.0;
@@ -181,11 +175,8 @@ TEST(Axisymmetric, UniformPressureMakesNoForce)
   }
 }
 
-/* ----------------------------------------------------------------------
-   Lame: a cylinder of radii 1 and 2 in plane strain, its bore widened by d, outside free:
-   u = A r + B/r with A + B = d and sigma_rr = 0 outside; found by damping
-------------------------------------------------------------------------- */
-
+// Lame: a cylinder of radii 1 and 2 in plane strain, its bore widened by d, outside free:
+// u = A r + B/r with A + B = d and sigma_rr = 0 outside; found by damping
 static double lame_error(int n, const std::string &options)
 {
   const double d = 1.0e-5, E = 1.0, nu = 0.3, h = 1.0 / n;
@@ -208,8 +199,7 @@ static double lame_error(int n, const std::string &options)
   double sum = 0.0, norm = 0.0;
   for (int i = 0; i < run.n(); i++) {
     const double r = run.reference(i)[0], V = run.mass()[i];
-    double sigma[6];
-    run.points().cauchy(i, sigma);
+    const auto sigma = run.cauchy(i);
     const double rr = 2 * (lambda + mu) * A - 2 * mu * B / (r * r);
     const double tt = 2 * (lambda + mu) * A + 2 * mu * B / (r * r);
     sum += V * (std::pow(sigma[0] - rr, 2) + std::pow(sigma[2] - tt, 2));
@@ -231,12 +221,9 @@ TEST(Axisymmetric, LameConverges)
   }
 }
 
-/* ----------------------------------------------------------------------
-   free vibrations. Cylinder in plane strain: radial motion J1(k r) with
-   (k R) J0(k R) = (1 - 2 nu)/(1 - nu) J1(k R), k = omega/c. Sphere (H. Lamb, 1881): tan(x)/x =
-   1/(1 - x^2 c^2/(4 cs^2)), x = omega R/c; both begin with v proportional to r
-------------------------------------------------------------------------- */
-
+// free vibrations. Cylinder in plane strain: radial motion J1(k r) with
+// (k R) J0(k R) = (1 - 2 nu)/(1 - nu) J1(k R), k = omega/c. Sphere (H. Lamb, 1881): tan(x)/x =
+// 1/(1 - x^2 c^2/(4 cs^2)), x = omega R/c; both begin with v proportional to r
 /** Root of f between a and b. */
 template <class F> static double root(double a, double b, F f)
 {
@@ -322,11 +309,7 @@ TEST(AxisymmetricVibration, Sphere)
   }
 }
 
-/* ----------------------------------------------------------------------
-   a ball that falls, spreads, and oscillates: momentum along the axis is that of gravity, the ledger
-   closes
-------------------------------------------------------------------------- */
-
+// a ball falls, spreads, and oscillates: momentum along the axis is that of gravity
 PARAMETER_TEST(AxisymmetricBall, MomentumAndEnergy, const char *,
                Values("transfer apic", "shape cubic transfer flip 1.0 scheme musl",
                       "shape gimp transfer aflip 0.99", "shape cpgimp transfer tpic",
@@ -376,8 +359,7 @@ PARAMETER_TEST(AxisymmetricBall, MomentumAndEnergy, const char *,
   }
 }
 
-/* ------------------- water in a glass: the pressure depends on the depth only, also at the axis */
-
+// water in a glass: the pressure depends on the depth only, also at the axis
 TEST(Axisymmetric, Hydrostatics)
 {
   for (const char *options : {"shape quadratic transfer apic", "shape cpgimp transfer apic"}) {
@@ -391,8 +373,7 @@ TEST(Axisymmetric, Hydrostatics)
     run.commands("run 3000\n");
     double worst = 0.0;
     for (int i = 0; i < run.n(); i++) {
-      double s[6];
-      run.points().cauchy(i, s);
+      const auto s = run.cauchy(i);
       const double p = -(s[0] + s[1] + s[2]) / 3.0;
       worst = std::max(worst, std::abs(p - g * (H - run.x()[i][1])) / (g * H));
     }
@@ -400,12 +381,9 @@ TEST(Axisymmetric, Hydrostatics)
   }
 }
 
-/* ----------------------------------------------------------------------
-   a cylinder that swells in a sleeve pushes it outward and does not get into it; momentum along the
-   axis is conserved. Then the same along the axis: of two equal cylinders that collide, the one
-   that was at rest goes on
-------------------------------------------------------------------------- */
-
+// a cylinder that swells in a sleeve pushes it outward and does not get into it; momentum along the
+// axis is conserved. Then the same along the axis: of two equal cylinders that collide, the one
+// that was at rest goes on
 static std::string two_bodies_of_revolution(const std::string &one, const std::string &two)
 {
   return plane("lj", "f f", "0 8 0 16", 2, 0.15) +
@@ -457,12 +435,9 @@ TEST(Axisymmetric, Contact)
   EXPECT_NEAR(velocity[1], velocity[0], 0.006);    // edges
 }
 
-/* ----------------------------------------------------------------------
-   a cylinder is drawn off another one: as these have no lateral strain, the pull per area of the circle
-   is that per width of two bars in the plane, up to what nodes at the sides and at the axis make of it with
-   four cells in the radius
-------------------------------------------------------------------------- */
-
+// a cylinder is drawn off another one: as these have no lateral strain, the pull per area of the
+// circle is that per width of two bars in the plane, up to what nodes at the sides and at the axis
+// make of it with four cells in the radius
 static double pull(bool round)
 {
   const double area = round ? PI * 2.0 * 2.0 : 2.0, strength = 0.2;
@@ -525,29 +500,19 @@ TEST(Axisymmetric, Cells)
   }
 }
 
-/* ----------------------------------------------------------------------
-   the elements of a mesh as domains of cpdi2: by the theorem of Pappus, area and center of each give the
-   volume of its ring exactly, whatever its shape; linear fields are reproduced
-------------------------------------------------------------------------- */
-
 static std::string crooked_mesh(double left, double right, double low, double high, int n)
 {
-  std::string text =
-      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string((n + 1) * (n + 1)) + "\n";
+  ThinMesh mesh;
   for (int j = 0; j <= n; j++)
     for (int i = 0; i <= n; i++) {
       const double inside = i > 0 && i < n && j > 0 && j < n ? 0.2 / n : 0.0;
-      text += strprintf("%d %.17g %.17g 0\n", 1 + i + j * (n + 1),
-                        left + (right - left) * ((double) i / n + inside * sin(7.0 * i + 3.0 * j)),
-                        low + (high - low) * ((double) j / n + inside * cos(5.0 * i - 2.0 * j)));
+      mesh.x.push_back({left + (right - left) * ((double) i / n + inside * sin(7.0 * i + 3.0 * j)),
+                        low + (high - low) * ((double) j / n + inside * cos(5.0 * i - 2.0 * j)),
+                        0.0});
+      const int c = i + j * (n + 1);
+      if (i < n && j < n) mesh.elements.push_back({c, c + 1, c + n + 2, c + n + 1});
     }
-  text += "$EndNodes\n$Elements\n" + std::to_string(n * n) + "\n";
-  for (int j = 0; j < n; j++)
-    for (int i = 0; i < n; i++) {
-      const int c = 1 + i + j * (n + 1);
-      text += strprintf("%d 3 2 1 1 %d %d %d %d\n", 1 + i + j * n, c, c + 1, c + n + 2, c + n + 1);
-    }
-  return text + "$EndElements\n";
+  return mesh.text();
 }
 
 TEST(Axisymmetric, ElementsOfAMeshAreRings)
@@ -577,7 +542,6 @@ TEST(Axisymmetric, ElementsOfAMeshAreRings)
                "use create_points elements or region");
 }
 
-// ---------------------------------------------------------------------- mistakes
 // F-bar changes volumes: of the motion of a point it keeps everything else, around the axis, too
 TEST(Axisymmetric, LockingChangesTheVolumeOnly)
 {
@@ -639,16 +603,15 @@ TEST(Axisymmetric, Refused)
                "axisymmetric yes (now no)");
 }
 
-// points as wide as cells: their size is known before deformation, and a later run does not ask again
+// points as wide as cells: their size is known before deformation, not asked again later
 TEST(Axisymmetric, FullCellsGoOn)
 {
   for (const char *options : {"shape cpgimp transfer flip 1.0 scheme musl",
                               "shape gimp locking fbar", "shape gimp every 30 dtcheck no"}) {
-    const std::string text = start(8, 8, 1.0, options) +
-        "region body block 0 4 2 6 INF INF\ncreate_points 1 region body ppc 1\n"
-        "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
-        "velocity all ramp vx 0 -0.3 x 0 4\ntimestep 0.05\nrun 20\n";
-    Scene run(text);
+    Scene run(start(8, 8, 1.0, options) +
+              replaced(points("block 0 4 2 6 INF INF", "density 1.0 neohookean 10.0 0.3"), "ppc 2",
+                       "ppc 1") +
+              "velocity all ramp vx 0 -0.3 x 0 4\ntimestep 0.05\nrun 20\n");
     EXPECT_EQ(run.error("run 5\n"), "") << options;
     // new points that are too large are refused as before
     expect_error(

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: mpi physics
 // mpi: 1 3
@@ -81,7 +81,7 @@ TEST(BernsteinKernels, AgreeWithReference)
   }
 }
 
-// a point on the low side of its block that rounding puts into the cell before, of which the tile has one node only
+// a point that rounding puts into the cell before its block, of which the tile has one node only
 TEST(BernsteinKernels, PointsOnFacesOfBlocks)
 {
   for (const char *isa : {"reference", "baseline", "avx2", "avx512"}) {
@@ -111,8 +111,8 @@ TEST(BernsteinKernels, PointsOnFacesOfBlocks)
   }
 }
 
-// the same in a run: a bar with points on faces of cells, and of which some are those of blocks; none of its last ones, which would have
-// nodes without mass
+// the same in a run: a bar with points on faces of cells, and of which some are those of blocks;
+// none of its last ones, which would have nodes without mass
 SERIAL_TEST(Bernstein, PointsOnFacesOfCells)
 {
   for (const double origin : {0.9625, 0.9375, 0.8625, 0.8375, 0.7625, 0.7375, 0.6625, 0.6375}) {
@@ -126,15 +126,13 @@ SERIAL_TEST(Bernstein, PointsOnFacesOfCells)
     const auto after = run.gather();
     EXPECT_EQ(before.size(), after.size());
     EXPECT_NEAR(Totals(after).mass, 0.2, 1e-12);
-    const auto *const m =
-        dynamic_cast<FixMPMMaterial *>(run.lmp->modify->get_fix_by_style("^mpm/material$")[0]);
+    const auto *const m = run.material();
     const int T = m->find_history("temperature");
     for (int i = 0; i < run.n(); i++) EXPECT_NEAR(m->history[i][T], 1.0, 1e-12);
   }
 }
 
-// a stretch of a block between a wall and a grip, as in test_total.cpp, and a patch: affine velocity
-// fields are exact, whatever the cells
+// a block between a wall and a grip, as in test_total, and a patch: affine velocities are exact
 SERIAL_TEST(Bernstein, AffineFieldsAreExact)
 {
   for (int dim : {2, 3})

@@ -1,15 +1,14 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 900
 
-// Convected particle domain interpolation, shapes cpdi and cpdi2 of fix mpm: large deformation,
-// conservation, ranks, restarts, and what is refused. The weights are tested in transfer/test_cpdi_kernels.cpp.
+// Convected particle domain interpolation, shapes cpdi and cpdi2 of fix mpm; its weights:
+// transfer/test_cpdi_kernels.cpp.
 
-#include "mpm_lammps.h"
-
+#include "elements/thin_testing.h"
 #include "error.h"
 #include "transfer/cpdi.h"
 
@@ -45,10 +44,8 @@ TEST(Restart, GoesOnBitByBit)
        {"shape cpdi transfer apic", "shape cpdi2 transfer flip 1.0 scheme musl",
         "shape cpdi2 transfer tpic"}) {
     SCOPED_TRACE(options);
-    const std::string next = "neighbor 0.3 bin\nfix grid all mpm 1.0 " + std::string(options) +
-        "\nfix m1 one mpm/material density 1.0 neohookean 10.0 0.3\n"
-        "fix m2 two mpm/material density 2.0 linear 20.0 0.2\ntimestep 0.05\n";
-    Continued run(replaced(two_bodies, "MPM_OPTIONS", options), 40, next, 40);
+    const auto scene = replaced(two_bodies, "MPM_OPTIONS", options);
+    Continued run(scene, 40, lines_again(scene), 40);
     EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
   }
   const std::string scene = replaced(two_bodies, "MPM_OPTIONS", "shape cpdi2");
@@ -73,9 +70,8 @@ SERIAL_TEST(Conservation, MomentumIsKeptAndNoEnergyGained)
   }
 }
 
-// The mean of corners is that of the box, in which GIMP takes it, where the box is in one cell: up to
-// second order in the displacement for points whose edges are on nodes at first. Gradients agree
-// anyway.
+// The mean of corners is that of the box, in which GIMP takes it, where the box is in one cell: to
+// second order in the displacement if edges are on nodes at first. Gradients agree.
 SERIAL_TEST(Equivalence, BoxesInOneCellAreThoseOfCpgimp)
 {
   for (const char *transfer : {"transfer flip 1.0 scheme musl", "transfer apic"}) {
@@ -93,8 +89,8 @@ SERIAL_TEST(Equivalence, BoxesInOneCellAreThoseOfCpgimp)
   }
 }
 
-// domains of two sizes that fill the periodic box: uniform pressure does not move them, as forces on a node
-// are the integral of the gradient of its function, which the corners give exactly
+// domains of two sizes that fill the periodic box: uniform pressure does not move them, as forces
+// on a node are the integral of the gradient of its function, which the corners give exactly
 TEST(UniformPressure, PointsOfTwoSizes)
 {
   for (const char *shape : {"cpdi", "cpdi2"}) {
@@ -119,8 +115,8 @@ static std::string stretching_bar(const std::string &region, const std::string &
       "variable v atom 0.1*x\nvelocity all set v_v 0 0\n";
 }
 
-// each point flies on with v = 2 x t^-1, eleven times as long in the end. Points of FLIP that are alone
-// on their nodes would not notice that they are stretched
+// each point flies on with v = 2 x t^-1, eleven times as long in the end. Points of FLIP that are
+// alone on their nodes would not notice that they are stretched
 SERIAL_TEST(Stretch, ElevenfoldWithoutFracture)
 {
   const auto error = [](const std::string &shape) {
@@ -136,10 +132,10 @@ SERIAL_TEST(Stretch, ElevenfoldWithoutFracture)
   EXPECT_GT(error("quadratic"), 1.0);
 }
 
-// J7, with stiffness: x = (1 + r t) X needs no forces inside; the last points are pulled with the traction of the law,
-// P = sigma = mu (F - 1/F) + lambda ln F/F, 4.321568e6 for E = 1e6, nu = 0.3 and F = 11. Stress and stretch over the
-// first half, to 0.5 %. (A domain that is pulled at its center carries half of that stress; with transfer apic the last
-// point does not stay with the others at a stretch of 5.)
+// J7, with stiffness: x = (1 + r t) X needs no forces inside; the last points are pulled with the
+// traction of the law, P = sigma = mu (F - 1/F) + lambda ln F/F, 4.321568e6 for E = 1e6, nu = 0.3
+// and F = 11. Stress and stretch over the first half, to 0.5 %. (A domain that is pulled at its
+// center carries half of it; with transfer apic the last point comes off at a stretch of 5.)
 SERIAL_TEST(Stretch, ElevenfoldStress)
 {
   const double rate = 2.5, dt = 2.0e-4, lambda = 1e6 * 0.3 / (1.3 * 0.4), mu = 1e6 / 2.6;
@@ -162,8 +158,7 @@ SERIAL_TEST(Stretch, ElevenfoldStress)
     double stress = 0.0, stretch = 0.0, n = 0.0;
     for (int i = 0; i < run.n(); i++) {
       if (run.reference(i)[0] > 2.0) continue;
-      double sigma[6];
-      run.points().cauchy(i, sigma);
+      const auto sigma = run.cauchy(i);
       stress += sigma[0];
       stretch += run.points().F[i][0];
       n++;
@@ -174,13 +169,12 @@ SERIAL_TEST(Stretch, ElevenfoldStress)
   }
 }
 
-// D2: cantilever of 4 x 1 m under its weight; finite elements: the lower corner goes down by 3.3027 m at
-// t = 1.048 s. Asked: 2 % of the length of 4 m, and of the time
-PARAMETER_TEST(Cantilever, BendsAsFiniteElements, const char *,
-               Values("shape cpdi transfer apic", "shape cpdi2 transfer apic"))
+// D2: cantilever of 4 x 1 m under its weight; finite elements: the lower corner goes down by 3.3027
+// m at t = 1.048 s. Asked: 2 % of the length of 4 m, and of the time
+SERIAL_PARAMETER_TEST(Cantilever, BendsAsFiniteElements, const char *,
+                      Values("shape cpdi transfer apic", "shape cpdi2 transfer apic"))
 {
   LONG_AFTER(1);
-  if (nranks() > 1) GTEST_SKIP() << "one is enough";
   const double half = 0.03125;    // of a point
   Scene run(plane("si", "f f", "0 5 -5 2 -0.1 0.1", 1, 0.05) +
             body("block 0 4 0 1 -0.1 0.1", "density 1050 neohookean 1e6 0.3",
@@ -230,8 +224,8 @@ SERIAL_TEST(Size, LimitIn3d)
                                  "3\\.[0-9]* node spacings away at step [0-9]+, the limit is 3"));
 }
 
-// shear by 6, at which domains of 3.5 cells lie around a periodic box of 3 cells more than once: as in a box
-// of many cells. There neighbor lists are made so rarely that domains leave the blocks that were active
+// shear by 6, at which domains of 3.5 cells lie around a periodic box of 3 cells more than once: as
+// in a box of many cells, where neighbor lists are so old that domains leave active blocks
 SERIAL_TEST(Periodic, DomainsAreWiderThanTheBox)
 {
   for (const char *options : {"shape cpdi", "shape cpdi2 transfer flip 1.0 scheme musl"}) {
@@ -331,49 +325,11 @@ SERIAL_TEST(Boundaries, WallsAndContactHold)
   }
 }
 
-// A box of n^dim cells of a mesh, of quadrilaterals or hexahedra, or each cell in triangles or
-// tetrahedra. Nodes inside are displaced.
-static std::string box_mesh(int dim, int n, bool simplices)
+static std::string unit_box(int dim, bool simplices)
 {
-  const int m = n + 1, nz = dim == 3 ? n : 1;
-  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" +
-      std::to_string(m * m * (dim == 3 ? m : 1)) + "\n";
-  const auto node = [&](int i, int j, int k) {
-    return 1 + i + m * (j + m * k);
-  };
-  for (int k = 0; k < (dim == 3 ? m : 1); k++)
-    for (int j = 0; j < m; j++)
-      for (int i = 0; i < m; i++) {
-        double x[3] = {(double) i, (double) j, (double) k};
-        const bool inside = i % n && j % n && (dim == 2 || k % n);
-        for (int d = 0; d < dim && inside; d++) x[d] += 0.1 * sin(3.0 * i + 5.0 * j + 7.0 * k + d);
-        text += strprintf("%d %.17g %.17g %.17g\n", node(i, j, k), x[0] / n, x[1] / n, x[2] / n);
-      }
-  std::vector<std::string> elements;
-  for (int k = 0; k < nz; k++)
-    for (int j = 0; j < n; j++)
-      for (int i = 0; i < n; i++) {
-        const auto at = [&](int bits) {
-          return std::to_string(node(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1))) +
-              " ";
-        };
-        if (dim == 2 && simplices) {
-          elements.push_back("2 2 0 1 " + at(0) + at(1) + at(3));
-          elements.push_back("2 2 0 1 " + at(0) + at(3) + at(2));
-        } else if (dim == 2) {
-          elements.push_back("3 2 0 1 " + at(0) + at(1) + at(3) + at(2));
-        } else if (simplices) {    // along the diagonal
-          for (const auto &e : {"13", "15", "23", "26", "45", "46"})
-            elements.push_back("4 2 0 1 " + at(0) + at(e[0] - '0') + at(e[1] - '0') + at(7));
-        } else {
-          elements.push_back("5 2 0 1 " + at(0) + at(1) + at(3) + at(2) + at(4) + at(5) + at(7) +
-                             at(6));
-        }
-      }
-  text += "$EndNodes\n$Elements\n" + std::to_string(elements.size()) + "\n";
-  for (std::size_t e = 0; e < elements.size(); e++)
-    text += std::to_string(e + 1) + " " + elements[e] + "\n";
-  return text + "$EndElements\n";
+  const int n[3] = {5, 5, 5};
+  const double l[3] = {1.0, 1.0, 1.0};
+  return box_mesh(dim, n, l, simplices, 0.1);
 }
 
 static std::string mesh_scene(int dim, const std::string &file, const std::string &options)
@@ -388,7 +344,7 @@ TEST(Elements, BecomeDomains)
   for (int dim : {2, 3})
     for (bool simplices : {false, true}) {
       SCOPED_TRACE(strprintf("%dd %s", dim, simplices ? "simplices" : "cubes"));
-      const ScratchFile file("msh", box_mesh(dim, 5, simplices));
+      const ScratchFile file("msh", unit_box(dim, simplices));
       // volume and mass, and those of domains; a field that is linear is exact
       Scene run(replaced(mesh_scene(dim, file.name, "transfer apic"), "move", "group mesh move") +
                 "variable vx atom 0.1*x+0.02*y\nvariable vy atom -0.05*x+0.03*y\n"
@@ -416,35 +372,29 @@ TEST(Elements, BecomeDomains)
   expect_error(mesh_scene(3, "no.msh", ""), "no.msh");
 }
 
-/* ----------------------------------------------------------------------
-   A ring that widens by a(t) = A (1 - cos 2 pi t/T)/2, r = R + a: stretched by 1 + a/R around, along the radius not at
-   all, and without Poisson's effect free of traction at its curved surfaces. Force per mass a'' + P/(density R),
-   P = mu (F - 1/F). Its points are quadrilaterals that fit these surfaces, n of them across. The velocities of a
-   leapfrog scheme at the start are those half a step before; late: those of the start. fits: if not, points are an
-   array of squares. Time steps may change as those of fix mpm/dt do, which are smallest, by the factor least, when it is widest.
-   Returns the largest rms error of the positions over A, 1e30 if points are lost.
-------------------------------------------------------------------------- */
-
+// A ring that widens by a(t) = A (1 - cos 2 pi t/T)/2, r = R + a: stretched by 1 + a/R around,
+// along the radius not at all, and without Poisson's effect free of traction at its curved
+// surfaces. Force per mass a'' + P/(density R), P = mu (F - 1/F). Its points are quadrilaterals
+// that fit these surfaces, n of them across. The velocities of a leapfrog scheme at the start are
+// those half a step before; late: those of the start. fits: if not, points are an array of squares.
+// Time steps may change as those of fix mpm/dt do, which are smallest, by the factor least, when it
+// is widest. Returns the largest rms error of the positions over A, 1e30 if points are lost.
 static double widening_ring(const std::string &options, int n, double A, double dt,
                             bool late = false, bool fits = true, double least = 1.0)
 {
   const int around = (int) std::lround(12.6 * n);
   const double low = 0.75, high = 1.25, h = 1.0 / n, T = 12.0, w = 2.0 * PI / T;
-  std::string mesh =
-      strprintf("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", (n + 1) * around);
+  ThinMesh mesh;
   for (int i = 0; i <= n; i++)
     for (int j = 0; j < around; j++) {
       const double R = low + (high - low) * i / n, angle = 2.0 * PI * (j + 0.13) / around;
-      mesh += strprintf("%d %.17g %.17g 0\n", 1 + around * i + j, R * cos(angle), R * sin(angle));
+      mesh.x.push_back({R * cos(angle), R * sin(angle), 0.0});
+      const int first = around * i, next = (j + 1) % around;
+      if (i < n)
+        mesh.elements.push_back(
+            {first + j, first + around + j, first + around + next, first + next});
     }
-  mesh += strprintf("$EndNodes\n$Elements\n%d\n", n * around);
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < around; j++) {
-      const int first = 1 + around * i, next = (j + 1) % around;
-      mesh += strprintf("%d 3 2 0 1 %d %d %d %d\n", 1 + around * i + j, first + j,
-                        first + around + j, first + around + next, first + next);
-    }
-  const ScratchFile file("ring", mesh + "$EndElements\n");
+  const ScratchFile file("ring", mesh.text());
 
   const double side = h * std::ceil((high + A + 0.4) / h);
   Scene run(
@@ -495,7 +445,7 @@ static double widening_ring(const std::string &options, int n, double A, double 
                   worst / A);
 }
 
-// second order with usl; no other scheme is better, as stress, strain, and positions are in step in all of them
+// second order with usl; no other scheme is better: stress, strain, and positions are in step
 SERIAL_TEST(Ring, SecondOrder)
 {
   for (const char *transfer : {"transfer apic", "transfer flip 1.0"}) {
@@ -512,12 +462,12 @@ SERIAL_TEST(Ring, SchemesAgree)
   for (const char *scheme : {"musl", "usf", "usavg"})
     EXPECT_NEAR(widening_ring(strprintf("transfer apic scheme %s", scheme), 10, 1.0, 0.01) / usl,
                 1.0, 0.1);
-  // half a step too late, the ring has a velocity of a'' dt/2 = 6.9e-4 too little, and swings by about as much
+  // half a step too late, the ring is slower by a'' dt/2 = 6.9e-4, and swings by about as much
   EXPECT_NEAR(widening_ring("transfer apic", 10, 1.0, 0.01, true) - usl, 5e-4, 2e-4);
 }
 
-// What has moved with one step is strained with that step, and not with the next one: then all schemes have the error
-// that the same steps make with usl
+// What has moved with one step is strained with that step, and not with the next one: then all
+// schemes have the error that the same steps make with usl
 SERIAL_TEST(Ring, SchemesAgreeWhereStepsChange)
 {
   const auto ring = [](const std::string &options) {
@@ -543,9 +493,9 @@ SERIAL_TEST(Ring, RaggedRim)
   EXPECT_GT(widening_ring("shape cpdi", 10, 1.0, 0.01, false, false), 0.1);
 }
 
-// Points that move with other velocities than they strain with, are driven by tension to where no stress holds them:
-// with FLIP, whose points keep the least of an acceleration of the nodes, noise grew to forty times this error. With
-// MUSL and USAVG they move with the velocities that strain takes
+// Tension drives points that move with other velocities than they strain with to where no stress
+// holds them: with FLIP noise grew to forty times this error. With MUSL and USAVG they move with
+// the velocities that strain takes
 SERIAL_TEST(Ring, TensionMakesNoNoise)
 {
   const double usl = widening_ring("transfer flip 1.0", 10, 1.0, 0.02);
@@ -566,7 +516,7 @@ SERIAL_TEST(Ring, TensionMakesNoNoise)
 // Domains are those of elements only while the fix is there that they were given to.
 TEST(Elements, AreNotLostWithoutAWord)
 {
-  const ScratchFile file("msh", box_mesh(2, 5, true));
+  const ScratchFile file("msh", unit_box(2, true));
   const std::string scene = mesh_scene(2, file.name, ""),
                     fix = "fix grid all mpm 1.0 shape cpdi2 \n",
                     squash = "velocity all ramp vx 1 -1 x 2 6\nrun 20\n", law = "fix m all";

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
@@ -45,11 +45,8 @@ static double largest_difference(const std::vector<std::array<double, 7>> &a,
   return measured("difference", worst);
 }
 
-/* ----------------------------------------------------------------------
-   What does not ask when a step of the run is: K steps are a larger one, to round-off. Bodies at rest
-   at the start, whose place in the middle of the steps is that at their start.
-------------------------------------------------------------------------- */
-
+// What does not ask when a step of the run is: K steps are a larger one, to round-off. Bodies at
+// rest at the start, whose place in the middle of the steps is that at their start.
 static const std::string head = space("lj", "p p f", "0 8 0 8 0 12", 2);
 static const std::string block = "region b block 2 6 2 6 0 4\ncreate_points 1 region b ppc 2\n";
 static const std::string rubber = "fix m all mpm/material density 1.0 neohookean 40.0 0.3\nfix g "
@@ -111,11 +108,8 @@ TEST(LargerStep, GoesOnFromARestartFile)
   for (const auto &feature : features) {
     if (std::string(feature.name) != "MovingFace" && std::string(feature.name) != "MovingRegion")
       continue;
-    const std::string scene = replaced(feature.text, "EVERY", "every 5");
-    // variables and regions are not in the file, points are
-    const auto fixes = replaced(scene, "create_points 1 region b ppc 2\n", "");
-    const std::string steps = "timestep 0.008\n";
-    Continued run(head + scene + steps, 53, "neighbor 0.3 bin\n" + fixes + steps, 49);
+    const auto scene = head + replaced(feature.text, "EVERY", "every 5") + "timestep 0.008\n";
+    Continued run(scene, 53, "neighbor 0.3 bin\n" + lines_again(scene), 49);
     EXPECT_TRUE(identical(run.whole.gather(), run.again.gather())) << feature.name;
   }
 }
@@ -143,11 +137,8 @@ TEST(LargerStep, DeletesTheSamePoints)
   EXPECT_LT(largest_difference(places(many), places(one)), 1.0e-9);
 }
 
-/* ----------------------------------------------------------------------
-   What grains see: points that move smoothly, without a jump at the start of a run, and, with a constant
-   force, that are where and as fast as they should be at the time of each step of the cycle
-------------------------------------------------------------------------- */
-
+// What grains see: points that move without a jump at the start of a run, and are, with a constant
+// force, where and as fast as they should be in each step of the cycle
 static std::string free_block(int every, double modulus)
 {
   return replaced(head, "p p f", "p p p") +
@@ -180,17 +171,14 @@ SERIAL_TEST(Seen, MotionIsThatOfTheTime)
     EXPECT_LT(measured("uniform motion", worst), 1.0e-12);
     EXPECT_NEAR(run.evaluate("xcm(all,x)"), start + v0 * t, 1.0e-12);
     EXPECT_NEAR(run.evaluate("vcm(all,z)"), a * t, 1.0e-12);
-    // the velocity at the end of the last step is taken for its whole length: half of a step of the run
+    // the velocity at the end of the last step is taken for its whole length
     EXPECT_NEAR(run.evaluate("xcm(all,z)") - height, 0.5 * a * t * (t + dt), 1.0e-12);
   }
 }
 
-/* ----------------------------------------------------------------------
-   A body on a linear spring: the mean force of K steps is that at the place on the lattice, as if the
-   step were a larger one. Leapfrog keeps v^2 + omega^2 x (x + dt v) to round-off, and its
-   phase is theta in each step with cos(theta) = 1 - (omega dt)^2/2.
-------------------------------------------------------------------------- */
-
+// A body on a linear spring: the mean force of K steps is that at the place on the lattice, as if
+// the step were a larger one. Leapfrog keeps v^2 + omega^2 x (x + dt v) to round-off, and its phase
+// is theta in each step with cos(theta) = 1 - (omega dt)^2/2.
 SERIAL_TEST(Seen, SpringIsNotDamped)
 {
   const double omega = 1.0, step = 0.5;
@@ -225,7 +213,7 @@ SERIAL_TEST(Seen, SpringIsNotDamped)
   }
 }
 
-// Time steps that change between two steps of the points: each force acts as long as its step lasts.
+// Time steps change between two steps of the points: each force acts as long as its step lasts.
 TEST(Seen, ImpulseIsThatOfAllSteps)
 {
   const double a = -0.25;
@@ -237,25 +225,25 @@ TEST(Seen, ImpulseIsThatOfAllSteps)
   EXPECT_NEAR(run.evaluate("vcm(all,z)") / (a * run.time()), 1.0, 1.0e-12);
 }
 
-/* ----------------------------------------------------------------------
-   A grain that grazes a free block: friction acts on the surface of a point, and its torque belongs to the
-   angular momentum. What is lost of the sum is a small part of these torques.
-------------------------------------------------------------------------- */
+static const std::string with_grain =
+    replaced(space("lj", "f f f", "-4 14 -4 14 -4 14", 2), "style mpm", "style hybrid sphere mpm") +
+    "comm_modify vel yes\n";
+static const std::string touch =
+    "pair_style granular\npair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
+    "neigh_modify exclude type 1 1\ntimestep 0.01\n";
 
+// A grain that grazes a free block: friction acts on the surface of a point, and its torque belongs
+// to the angular momentum. What is lost of the sum is a small part of these torques.
 SERIAL_TEST(Seen, TorquesAreThoseOfAllSteps)
 {
   for (const int every : {1, 3}) {
     Scene run(
-        "units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
-        "comm_modify vel yes\nregion box block -4 14 -4 14 -4 14\ncreate_box 2 box\n" +
-        strprintf("fix grid all mpm 1.0 every %d\n", every) +
+        with_grain + strprintf("fix grid all mpm 1.0 every %d\n", every) +
         "region b block 2 7 2 7 2 6\ncreate_points 1 region b ppc 2 diameter 0.5\n"
         "create_atoms 2 single 3.6 4.1 7.1\nset type 2 diameter 2.0 density 2.0\n"
         "group block type 1\ngroup grain type 2\nvelocity grain set 1.0 0 -0.3\n"
-        "fix m block mpm/material density 1.0 neohookean 60.0 0.3\nfix move grain nve/sphere\n"
-        "pair_style granular\n"
-        "pair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
-        "neigh_modify exclude type 1 1\ntimestep 0.01\n");
+        "fix m block mpm/material density 1.0 neohookean 60.0 0.3\nfix move grain nve/sphere\n" +
+        touch);
     double torque = 0.0;
     run.each_step([&](double **) {
       for (int i = 0; i < run.n(); i++)
@@ -273,23 +261,21 @@ SERIAL_TEST(Seen, TorquesAreThoseOfAllSteps)
   }
 }
 
-// A torque on a point that leaves the group of the neighbor lists before it is time for the cycle, here
-// one inside that counts as failed during the first step only.
+// A torque on a point that leaves the group of the neighbor lists before it is time for the cycle,
+// here one inside that counts as failed during the first step only.
 SERIAL_TEST(Seen, TorqueIsNotLostWithTheGroup)
 {
   const double dt = 0.01, T = 0.3;
   Scene run(
-      "units lj\nboundary f f f\natom_style hybrid sphere mpm\nneighbor 0.3 bin\n"
-      "neigh_modify every 1 delay 0 check no\ncomm_modify vel yes\n"
-      "region box block -4 14 -4 14 -4 14\ncreate_box 2 box\nfix grid all mpm 1.0 every 3\n"
+      with_grain +
+      "neigh_modify every 1 delay 0 check no\nfix grid all mpm 1.0 every 3\n"
       "region b block 2 8 2 8 2 8\ncreate_points 1 region b ppc 2\ngroup block type 1\n"
       "create_atoms 2 single 5 5 10\nset type 2 diameter 1.0 density 1.0\ngroup skin type 2\n"
       "atom_modify first skin\nneigh_modify include skin\ncomm_modify group skin\n"
       "fix surf block mpm/surface group skin\n"
       "fix m block mpm/material density 1.0 eos linear 10.0 strength elastic 5.0 damage rankine "
-      "100.0\n"
-      "pair_style granular\npair_coeff * * hooke 60.0 2.0 tangential linear_nohistory 1.0 0.5\n"
-      "neigh_modify exclude type 1 1\ntimestep 0.01\nrun 0\n");
+      "100.0\n" +
+      touch + "run 0\n");
   const auto *material = run.material();
   const auto inside = [&] {
     int i = 0;
@@ -310,8 +296,6 @@ SERIAL_TEST(Seen, TorqueIsNotLostWithTheGroup)
   EXPECT_FALSE(in_lists[1]);
   EXPECT_NEAR(run.sums().L[1], T * dt, 1.0e-14);
 }
-
-// ---------------------------------------------------------------------- fields step together
 
 static const std::string two_fields = space("lj", "p p p", "0 8 0 8 0 8", 2) +
     fields({{"one", "block 1 3 2 5 2 5"}, {"two", "block 5 7 2 5 2 5"}}, "1.0 every 3") +

@@ -1,39 +1,25 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 //
 // labels: unit physics ranks
 // mpi: 1 2
 
-// Each entry of the energy ledger against a closed form or a sum that the test makes itself, and the
-// balance of scenes in which many things happen at once.
+// Each entry of the energy ledger against a closed form or a sum that the test makes itself, and
+// the balance of scenes in which many things happen at once.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
 
-enum {
-  KINETIC,
-  STORED,
-  PLASTIC,
-  VISCOUS,
-  HEAT,
-  EXTERNAL,
-  BOUNDARY,
-  CONTACT,
-  TRANSFER,
-  INTEGRATION,
-  RESIDUAL,
-  FRACTURE,
-  DELETED,
-  LAWS
-};
+// clang-format off
+enum { KINETIC, STORED, PLASTIC, VISCOUS, HEAT, EXTERNAL, BOUNDARY, CONTACT, TRANSFER, INTEGRATION,
+       RESIDUAL, FRACTURE, DELETED, LAWS };
+// clang-format on
 
 static const std::string watch = "compute e all mpm/energy\nthermo_style custom step c_e c_e[*]\n";
 
-// ---------------------------------------------------------------------- transfers
-
-// Random velocities, and no stress at the start: in the first step a transfer is nothing but a projection,
-// v -> S S+ v for PIC with S+ = m^-1 S^T M, and f v + (1 - f) S S+ v for FLIP with the share f
+// Random velocities, no stress at the start: the first transfer is a projection, v -> S S+ v for
+// PIC with S+ = m^-1 S^T M, and f v + (1 - f) S S+ v for FLIP with the share f
 TEST(Transfer, LosesWhatTheProjectionRemoves)
 {
   const std::pair<const char *, double> transfers[] = {
@@ -86,11 +72,9 @@ TEST(Transfer, LosesWhatTheProjectionRemoves)
   }
 }
 
-// ---------------------------------------------------------------------- walls
-
-// A point in the plane of a wall gives its nodes outside the mass of those inside, so that all of them move
-// with the wall (velocity V) at once: the impulse m (V - v) does the work m (V - v).V, and the collision
-// loses m |V - v|^2/2. With PIC the point then has this velocity.
+// A point in the plane of a wall gives its nodes outside the mass of those inside, so that all of
+// them move with the wall (velocity V) at once: the impulse m (V - v) does the work m (V - v).V,
+// and the collision loses m |V - v|^2/2. With PIC the point then has this velocity.
 TEST(Wall, StopsALonePoint)
 {
   const double v[2] = {0.7, -0.4}, mass = 3.0 * 0.25;
@@ -113,8 +97,7 @@ TEST(Wall, StopsALonePoint)
   }
 }
 
-// A piston that moves evenly does the work V.J with the impulse J, which is the momentum of a body that
-// nothing else touches
+// A piston that moves evenly does the work V.J with the impulse J, the momentum of the body
 TEST(Wall, PistonGivesMomentumTimesItsVelocity)
 {
   for (const char *options : {"transfer apic", "transfer flip 1.0 scheme musl"}) {
@@ -131,10 +114,8 @@ TEST(Wall, PistonGivesMomentumTimesItsVelocity)
   }
 }
 
-// ---------------------------------------------------------------------- forces on points
-
-// A constant force on a body does force times path. In a step of symplectic Euler the path is that with the
-// new velocity, and the kinetic energy has the mean of old and new: they differ by F^2 dt^2/(2 m) in each step
+// A constant force on a body does force times path. In a step of symplectic Euler the path is that
+// with the new velocity, that of kinetic energy the mean: they differ by F^2 dt^2/(2 m)
 TEST(Force, WorkIsForceTimesPath)
 {
   Scene run(plane("lj", "f f", "0 20 0 8", 1, 0.3) +
@@ -150,8 +131,8 @@ TEST(Force, WorkIsForceTimesPath)
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * expected);
 }
 
-// A body without strain is slowed down by -gamma v at each of its points: the velocity falls by the factor
-// 1 - gamma dt/m in each step, and the force takes all of what is lost
+// A body without strain is slowed down by -gamma v at each of its points: the velocity falls by the
+// factor 1 - gamma dt/m in each step, and the force takes all of what is lost
 TEST(Force, DampingTakesTheEnergy)
 {
   Scene run(plane("lj", "f f", "0 20 0 8", 1, 0.3) +
@@ -165,10 +146,9 @@ TEST(Force, DampingTakesTheEnergy)
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * start);
 }
 
-// ---------------------------------------------------------------------- contact
-
-// A block slides on a slab that is held: friction takes mu N d, and gives half of m v0^2 less what is left. The
-// load comes on slowly, so that nothing bounces; 2 % is asked of friction in the benchmark of sliding blocks.
+// A block slides on a slab that is held: friction takes mu N d, and gives half of m v0^2 less what
+// is left. The load comes on slowly, so that nothing bounces; 2 % is asked of friction in the
+// benchmark of sliding blocks.
 SERIAL_TEST(Contact, FrictionTakesForceTimesPath)
 {
   const double mu = 0.3, g = 2.0;
@@ -199,8 +179,6 @@ SERIAL_TEST(Contact, FrictionTakesForceTimesPath)
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * 0.5 * 60.0 * 4.0);
 }
 
-// ---------------------------------------------------------------------- points that are deleted
-
 // A body without stress leaves the box and takes its kinetic energy with it
 TEST(Deleted, TakesItsKineticEnergy)
 {
@@ -219,10 +197,8 @@ TEST(Deleted, TakesItsKineticEnergy)
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-11);
 }
 
-// ---------------------------------------------------------------------- heat
-
-// A perfectly plastic bar hits a wall: the share beta of the plastic work becomes heat, and the plastic work
-// is the yield stress times the plastic strain times the volume, up to the change of the volume
+// A perfectly plastic bar hits a wall: the share beta of the plastic work becomes heat; that work
+// is yield stress times plastic strain times volume, up to the change of the volume
 TEST(Heat, IsTheTaylorQuinneyShareOfThePlasticWork)
 {
   const double Y = 1.0, beta = 0.8;
@@ -243,11 +219,10 @@ TEST(Heat, IsTheTaylorQuinneyShareOfThePlasticWork)
   EXPECT_NEAR(measured("plastic work / Y eps V", e[PLASTIC] / expected), 1.0, 0.02);
 }
 
-// ---------------------------------------------------------------------- laws
-
-// What laws account for beyond the work of stress in the updates is the error of the trapezoidal rule, of
-// third order in the strain of a step: a body that vibrates for the same time has a quarter of it with half
-// of the time step. The same scenes have an integration error of first order, which is that of the scheme
+// What laws account for beyond the work of stress in the updates is the error of the trapezoidal
+// rule, of third order in the strain of a step: a body that vibrates for the same time has a
+// quarter of it with half of the time step. The same scenes have an integration error of first
+// order, which is that of the scheme
 TEST(Laws, HaveTheWorkOfTheirStressToSecondOrder)
 {
   for (const std::string law : {"neohookean 20 0.3", "eos linear 20 strength elastic 10"})
@@ -271,8 +246,6 @@ TEST(Laws, HaveTheWorkOfTheirStressToSecondOrder)
     }
 }
 
-// ---------------------------------------------------------------------- balance
-
 /** The largest residual in so many steps, by the energy in play, and the entries at the end. */
 static double largest_residual(Scene &run, int steps, std::vector<double> &e)
 {
@@ -287,8 +260,7 @@ static double largest_residual(Scene &run, int steps, std::vector<double> &e)
   return worst / scale;
 }
 
-/** At the nodes where two blocks, the floor and a wall meet, friction of all of them acts one after the
- *  other, and with FMPM again for each term. */
+/** Where two blocks, floor and wall meet, friction of all acts in turn, with FMPM for each term. */
 static std::string corner(const std::string &lattice)
 {
   return plane("si", "f f", "0 10 0 9", 2, 0.3) +
@@ -315,8 +287,8 @@ TEST(Balance, HoldsWhereManyActOnANode)
   }
 }
 
-// The same without stress and gravity: in the first step nothing but walls, contact and transfers is at work,
-// and no part of what they do to each other's impulses is taken for work of stress
+// The same without stress and gravity: in the first step nothing but walls, contact and transfers
+// is at work, and no part of what they do to each other's impulses is taken for work of stress
 TEST(Balance, CollisionsAreNoWorkOfStress)
 {
   for (const char *transfer : {"apic", "flip 1.0", "xpic 3", "fmpm 3"}) {
@@ -330,8 +302,8 @@ TEST(Balance, CollisionsAreNoWorkOfStress)
   }
 }
 
-// Work of stress with the gradients, weights and stress of the forces on the nodes: in 2d and 3d, frames,
-// around an axis, with averages against locking, domains, modified functions at faces
+// Work of stress with the gradients, weights and stress of the forces on the nodes: in 2d and 3d,
+// frames, around an axis, with averages against locking, domains, modified functions at faces
 TEST(Balance, HoldsForAllFormsOfForces)
 {
   const std::pair<int, const char *> cases[] = {

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // timeout: 900
@@ -10,13 +10,10 @@
 
 using namespace MPM_TEST;
 
-/* ----------------------------------------------------------------------
-   Cook's membrane: corners (0,0), (48,44), (48,60), (0,44), clamped on the left, a shear force
-   F = 100 on the right edge; neo-Hookean, plane strain. Displacements of the middle of the right
-   edge by finite elements of order 2 with pressures of order 1, converged: E = 240.565, nu = .4999:
-   6.953; E = 70, nu = 1/3: 19.337.
-------------------------------------------------------------------------- */
-
+// Cook's membrane: corners (0,0), (48,44), (48,60), (0,44), clamped on the left, a shear force
+// F = 100 on the right edge; neo-Hookean, plane strain. Displacements of the middle of the right
+// edge by finite elements of order 2 with pressures of order 1, converged: E = 240.565, nu = .4999:
+// 6.953; E = 70, nu = 1/3: 19.337.
 struct Cook {
   double u;         // displacement of (48,52)
   double ripple;    // rms of pressure minus its mean over the points of a cell, by rms of pressure
@@ -64,14 +61,12 @@ static Cook cook(const char *options, double h, double nu, double cfl = 0.75)
   out.u = 1.5 * u[0] / n[0] - 0.5 * u[1] / n[1];
 
   // pressures in the cells that the points began in, away from the singular corners
-  std::vector<std::array<double, 3>> cells(100 * 100);
-  for (auto &cell : cells) cell = {0.0, 0.0, 0.0};
+  std::vector<std::array<double, 3>> cells(100 * 100, {0.0, 0.0, 0.0});
   double square = 0.0;
   for (int i = 0; i < run.n(); i++) {
     const double *X = run.reference(i);
     if (X[0] < 8.0 || X[0] > 40.0) continue;
-    double s[6];
-    run.points().cauchy(i, s);
+    const auto s = run.cauchy(i);
     const double p = -(s[0] + s[1] + s[2]) / 3.0;
     auto &cell = cells[100 * (int) (X[0] / h) + (int) (X[1] / h)];
     cell[0] += 1.0;
@@ -119,9 +114,9 @@ TEST(CookMembrane, CompressibleStays)
   EXPECT_NEAR(none / 19.337, 1.0, 0.02);
   EXPECT_NEAR(cook("locking pressure", 2.0, 1.0 / 3.0).u / 19.337, 1.0, 0.03);
 
-  // averages make the panel a little softer, in the updated frame by as much as in the total one, where
-  // they are always over the same points. When the averaged volumes parted from the motion while points
-  // vibrated over the lattice, it crept: 2.9 % softer
+  // averages make the panel a little softer, in the updated frame by as much as in the total one,
+  // where they are always over the same points. When the averaged volumes parted from the motion
+  // while points vibrated over the lattice, it crept: 2.9 % softer
   const double total = cook("frame total", 2.0, 1.0 / 3.0).u;
   const double softer = cook("frame total locking fbar", 2.0, 1.0 / 3.0).u / total;
   EXPECT_NEAR(cook("locking fbar", 2.0, 1.0 / 3.0).u / none, softer, 0.01);
@@ -136,12 +131,9 @@ TEST(CookMembrane, CompressibleDoesNotCreepInTheTotalFrame)
   EXPECT_NEAR(small / fbar, 1.0, 0.004);
 }
 
-/* ----------------------------------------------------------------------
-   Limit load of a rough rigid punch of half-width 1 on a half-space that flows at constant volume
-   (von Mises, perfectly plastic, plane strain): (2 + pi) sigma_y/sqrt(3) by L. Prandtl. On the
-   lattice, the edge of the punch is half a cell beyond its last node.
-------------------------------------------------------------------------- */
-
+// Limit load of a rough rigid punch of half-width 1 on a half-space that flows at constant volume
+// (von Mises, perfectly plastic, plane strain): (2 + pi) sigma_y/sqrt(3) by L. Prandtl. On the
+// lattice, the edge of the punch is half a cell beyond its last node.
 static double punch(const std::string &options)
 {
   const double h = 0.1, dt = 0.4 * h / 37.0;
@@ -175,8 +167,7 @@ TEST(Punch, LimitLoad)
   }
 }
 
-/* ---- A body whose velocity is linear in position deforms uniformly in a step, averaged or not. */
-
+// A body whose velocity is linear in position deforms uniformly in a step, averaged or not.
 PARAMETER_TEST(Uniform, StretchIsExact, const char *,
                Values("locking fbar", "locking pressure", "locking both",
                       "locking fbar shape cubic", "locking fbar scheme musl",
@@ -212,12 +203,9 @@ PARAMETER_TEST(Uniform, StretchIsExact, const char *,
   }
 }
 
-/* ----------------------------------------------------------------------
-   Averages change volumes of points, but not their sum. F-bar in the updated frame: after some steps it
-   is that of the motion, which is the same without averages as the stress is next to nothing. Averages
-   of the changes in a step: the sum follows that of the motion in the next step, after some with them.
-------------------------------------------------------------------------- */
-
+// Averages change volumes of points, but not their sum. F-bar in the updated frame: after some
+// steps it is that of the motion, which is the same without averages as the stress is next to
+// nothing. Averages of the changes in a step: the sum follows that of the motion one step later.
 struct Volumes {
   double mean, largest;    // of J
 };
@@ -270,17 +258,14 @@ PARAMETER_TEST(VolumeOfStep, SumFollowsTheMotion, const char *,
                        1.0e-13);
 }
 
-/* ----------------------------------------------------------------------
-   Half of a bar of metal with linear hardening, L long and W wide, or a quarter of one with a square
-   section, which a grip pulls: plastic flow at constant volume, no neck, as the metal hardens faster
-   than the section shrinks. With c = 1, in plane strain 2/sqrt(3), the stress along the bar is
-   s = c (Y + H c e), e the plastic part of the logarithmic strain, c e the equivalent plastic strain.
-   Where the bar is narrow at the grip, within less than W, it is strained less, and so it is
-   strained by at least what is uniform along L, at most what is uniform along L - W. In the second half of
-   the way, when the waves of the start are over, the force must stay within 2 % of this in every step,
-   while the grip crosses 3 to 5 planes of nodes: the motion is much slower than waves are.
-------------------------------------------------------------------------- */
-
+// Half of a bar of metal with linear hardening, L long and W wide, or a quarter of one with a
+// square section, which a grip pulls: plastic flow at constant volume, no neck, as the metal
+// hardens faster than the section shrinks. With c = 1, in plane strain 2/sqrt(3), the stress along
+// the bar is s = c (Y + H c e), e the plastic part of the logarithmic strain, c e the equivalent
+// plastic strain. Where the bar is narrow at the grip, within less than W, it is strained less, and
+// so it is strained by at least what is uniform along L, at most what is uniform along L - W. In
+// the second half of the way, when the waves of the start are over, the force must stay within 2 %
+// of this in every step, while the grip crosses 3 to 5 planes of nodes.
 struct Tension {
   double force, strain;    // by that of the uniform bar; largest plastic strain
 };
@@ -369,8 +354,7 @@ TEST(Tension, ForceIsSmoothWithoutCure)
   tension(2, 1.25e-4, "locking none");
 }
 
-/* ---- A pressure that is the same everywhere is its own average, however much points are compressed. */
-
+// A pressure that is the same everywhere is its own average, however much points are compressed.
 TEST(AveragedPressure, KeepsAUniformOne)
 {
   std::vector<Scene::State> states[2];
@@ -396,12 +380,9 @@ TEST(AveragedPressure, KeepsAUniformOne)
   EXPECT_GT(speed, 0.01);
 }
 
-/* ----------------------------------------------------------------------
-   Free oscillation of a bar in uniaxial strain, fixed at one end: v = v0 sin(k X) cos(w t) with
-   w = k sqrt((lambda + 2 mu)/rho), k = pi/2. There is nothing to cure, so averages only lower the
-   frequency, by (kh)^2/8 of the part of the bulk modulus in lambda + 2 mu.
-------------------------------------------------------------------------- */
-
+// Free oscillation of a bar in uniaxial strain, fixed at one end: v = v0 sin(k X) cos(w t) with
+// w = k sqrt((lambda + 2 mu)/rho), k = pi/2. There is nothing to cure, so averages only lower the
+// frequency, by (kh)^2/8 of the part of the bulk modulus in lambda + 2 mu.
 PARAMETER_TEST(Bar, ConfinedOscillation, const char *,
                Values("locking none", "locking fbar", "locking pressure", "locking both"))
 {
@@ -445,11 +426,8 @@ PARAMETER_TEST(Bar, ConfinedOscillation, const char *,
   }
 }
 
-/* ----------------------------------------------------------------------
-   Free oscillation of a block in plane strain, nu = 0.4999. With APIC, the energy that is left
-   after some time tells whether the block moves like one of nu = 0.49, which does not lock yet.
-------------------------------------------------------------------------- */
-
+// Free oscillation of a block in plane strain, nu = 0.4999. With APIC, the energy that is left
+// after some time tells whether the block moves like one of nu = 0.49, which does not lock yet.
 struct Oscillation {
   double energy, spread, residual;    // by the energy at the start; of J, from smallest to largest
 };
@@ -500,8 +478,8 @@ TEST(Block, EnergyWithoutDamping)
   EXPECT_NEAR(block(flip + "fbar", 0.4999).energy, 1.0, 0.05);
 }
 
-// Points of solids that keep their volume lock without a cure, which is said once: not of ones that give way, of fluids, nor of
-// materials that have no points
+// Points of solids that keep their volume lock without a cure, which is said once: not of ones that
+// give way, of fluids, nor of materials that have no points
 TEST(Told, Locking)
 {
   const auto warnings = [](const std::string &material, const std::string &options = "") {

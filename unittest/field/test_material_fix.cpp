@@ -1,11 +1,12 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: unit input restart
 // mpi: 1 2
 
 // fix mpm/material: definition in the input and in files, masses, and history variables that move
-// with their points, through restart files and to new points. The laws: material/test_materials.cpp.
+// with their points, through restart files and to new points. The laws:
+// material/test_materials.cpp.
 
 #include "mpm_lammps.h"
 
@@ -13,11 +14,8 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 using namespace MPM_TEST;
-
-namespace {
 
 const std::string STEEL = "density 7830 eos linear 172e9 strength johnson/cook 79.6e9 806e6 614e6 "
                           "0.168 0.0089 1 1.1 1540 20 thermal adiabatic 460 20 0.9";
@@ -35,19 +33,15 @@ timestep 1.0e-9
 )";
 
 /** The error that a definition gives: what follows "fix m one mpm/material". */
-std::string error_of_material(const std::string &definition)
+static std::string error_of_material(const std::string &definition)
 {
   return error_of(scene + "fix m one mpm/material " + definition + "\n");
 }
 
-bool contains(const std::string &text, const std::string &part)
+static bool contains(const std::string &text, const std::string &part)
 {
   return text.find(part) != std::string::npos;
 }
-
-}    // namespace
-
-/* ---------------------------------------------------------------------- definition */
 
 TEST(MaterialFix, ErrorsNameValueAndRemedy)
 {
@@ -148,8 +142,6 @@ TEST(MaterialFix, BadFiles)
   }
 }
 
-/* ---------------------------------------------------------------------- range of validity */
-
 /** sqrt(2/3 D:D) of the step that took F0 to F1, from the velocity gradient of its middle. */
 double strain_rate(const double *F0, const double *F1, double dt)
 {
@@ -159,8 +151,8 @@ double strain_rate(const double *F0, const double *F1, double dt)
   return std::sqrt(2.0 / 3.0) * (0.5 * (G + G.transpose())).norm() / dt;
 }
 
-// Two blocks, on two ranks when there are two, change their shape. Each warning names the first step, and of the points outside in this
-// step the first one: found here from the state of all points after each step.
+// Two blocks, on two ranks when there are two, change their shape. Each warning names the first
+// step, and its first point outside: found here from the state of all points.
 TEST(MaterialFix, LeavingARangeWarnsOnce)
 {
   const double dt = 1.0e-6;
@@ -235,8 +227,6 @@ TEST(MaterialFix, LeavingARangeWarnsOnce)
   EXPECT_EQ(found.size(), 3);
 }
 
-/* ---------------------------------------------------------------------- mass */
-
 TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
 {
   Scene run(scene + "fix a one mpm/material density 1000 linear 1e6 0.3\n");
@@ -256,8 +246,6 @@ TEST(MaterialFix, MassIsDensityTimesVolumeUnlessSet)
   EXPECT_EQ(run.lmp->atom->natoms, 192);
   check();
 }
-
-/* ---------------------------------------------------------------------- history */
 
 // points whose pores have water in them have another mass, for as long as there is a fix mpm/pore
 TEST(MaterialFix, MassFollowsTheWaterOfAFixPoreOnly)

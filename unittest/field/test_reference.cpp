@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 2 4
@@ -22,11 +22,8 @@ static std::string body(int dim, const std::string &options, const std::string &
            strprintf("0.5 frame total %s", options.c_str()));
 }
 
-/* ----------------------------------------------------------------------
-   a body without stiffness in simple shear to 3, spinning, and stretched: F = (I + dt L)^n to
-   round-off whenever the reference is made anew, and stress is that of F
-------------------------------------------------------------------------- */
-
+// a body without stiffness in simple shear to 3, spinning, and stretched: F = (I + dt L)^n to
+// round-off whenever the reference is made anew, and stress is that of F
 SERIAL_TEST(ReferenceUpdate, AffineMotionIsExact)
 {
   for (const int dim : {2, 3})
@@ -45,11 +42,8 @@ SERIAL_TEST(ReferenceUpdate, AffineMotionIsExact)
       for (int i = 0; i < run.n(); i++) {
         const double *F = run.points().F[i], *x = run.x()[i], *X = run.reference(i);
         const double y[2] = {1.0 + 3.0 * 0.1, 1.0};    // points keep their velocities
-        worst = std::max(worst, std::abs(F[0] - y[0]));
-        worst = std::max(worst, std::abs(F[1] - 3.0));
-        worst = std::max(worst, std::abs(F[3] + 0.3));
-        worst = std::max(worst, std::abs(F[4] - y[1]));
-        worst = std::max(worst, std::abs(x[0] - (1.3 * X[0] + 3.0 * X[1])));
+        worst = std::max({worst, std::abs(F[0] - y[0]), std::abs(F[1] - 3.0), std::abs(F[3] + 0.3),
+                          std::abs(F[4] - y[1]), std::abs(x[0] - (1.3 * X[0] + 3.0 * X[1]))});
         shear = std::max(shear, F[1]);
       }
       EXPECT_LT(worst, 1e-7) << rest;
@@ -60,8 +54,8 @@ SERIAL_TEST(ReferenceUpdate, AffineMotionIsExact)
     }
 }
 
-// The same for points that are deformed already when they get their reference configuration, in a way that does
-// not commute with what follows: F = (I + t A) F0
+// The same for points that are deformed already when they get their reference configuration, in a
+// way that does not commute with what follows: F = (I + t A) F0
 SERIAL_TEST(ReferenceUpdate, DeformedAtTheStart)
 {
   const double F0[4] = {1.3, 0.5, 0.0, 0.8}, A[4] = {0.1, 1.0, -0.1, 0.0};
@@ -111,8 +105,8 @@ SERIAL_TEST(ReferenceUpdate, NoneIsTheTotalFrame)
   }
 }
 
-// The lattice sees a body of the volume V0 det R: inside, its share of the volume of a node is one, however
-// much the body has expanded since the start.
+// The lattice sees a body of the volume V0 det R: inside, its share of the volume of a node is one,
+// however much the body has expanded since the start.
 SERIAL_TEST(ReferenceUpdate, VolumeOnTheLattice)
 {
   Scene run(body(2, "reference update 1.2", "neohookean 1.0e-9 0.3") + "timestep 0.02\n");
@@ -134,11 +128,8 @@ SERIAL_TEST(ReferenceUpdate, VolumeOnTheLattice)
   EXPECT_NEAR(most, 1.0, 0.1);
 }
 
-/* ----------------------------------------------------------------------
-   a block that is thrown with a shear and vibrates: momentum is exact, energy does not jump, and the
-   motion is that of a frame without updates up to the error of both
-------------------------------------------------------------------------- */
-
+// a block that is thrown with a shear and vibrates: momentum is exact, energy does not jump, and
+// the motion is that of a frame without updates up to the error of both
 SERIAL_TEST(ReferenceUpdate, MomentumAndEnergy)
 {
   double angle[2], energy[2];
@@ -166,11 +157,8 @@ SERIAL_TEST(ReferenceUpdate, MomentumAndEnergy)
   EXPECT_NEAR(energy[1], energy[0], 0.1);
 }
 
-/* ----------------------------------------------------------------------
-   linear functions: after an update points are anywhere in their cells, as in the updated frame
-------------------------------------------------------------------------- */
-
-/** Where all nodes are full, keyword light changes nothing: a periodic box that is sheared. */
+// Linear functions: after an update points are anywhere in their cells, as in the updated frame.
+// Where all nodes are full, keyword light changes nothing: a periodic box that is sheared
 SERIAL_TEST(ReferenceUpdate, NoLightNodesNoChange)
 {
   for (const char *rest : {"transfer apic", "transfer apic scheme musl", "transfer apic scheme usf",
@@ -192,7 +180,7 @@ SERIAL_TEST(ReferenceUpdate, NoLightNodesNoChange)
   }
 }
 
-/** A block hits a wall: it stays whole with light nodes, or where linear functions are sound without. */
+// A block hits a wall: it stays whole with light nodes, or where linear functions are sound without
 SERIAL_TEST(ReferenceUpdate, ImpactWithLinearFunctions)
 {
   const struct {
@@ -243,14 +231,10 @@ TEST(ReferenceUpdate, Ranks)
 // steps at which the distortion is looked at do not depend on where a run starts
 TEST(ReferenceUpdate, Restart)
 {
-  const std::string fixes = "fix grid all mpm 0.5 frame total transfer apic reference update 1.2\n"
-                            "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n";
+  const auto scene = body(3, "transfer apic reference update 1.2", "neohookean 10.0 0.3") + thrown;
   const ScratchFile file("85.bin");
-  Scene whole, again;
-  whole.commands(body(3, "transfer apic reference update 1.2", "neohookean 10.0 0.3") + thrown +
-                 "restart 85 " + replaced(file.name, "85", "*") + "\nrun 145\n");
-  again.commands("read_restart " + file.name + "\nneighbor 0.2 bin\n" + fixes +
-                 "timestep 0.01\nrun 60\n");
+  Scene whole(scene + "restart 85 " + replaced(file.name, "85", "*") + "\nrun 145\n"),
+      again("read_restart " + file.name + "\n" + lines_again(scene) + "run 60\n");
   EXPECT_TRUE(identical(whole.gather(), again.gather()));
 }
 

@@ -1,32 +1,30 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 
 // What tells transfer tpic from transfer apic, from theory. Both have an affine matrix C:
 //   tpic: C = sum_i v_i (x) grad N_ip                        the gradient of the field of the nodes
-//   apic: C = D^-1 sum_i N_ip v_i (x) (x_i - x_p)            its first moments, D those of N: h^2/4, h^2/3
-// A wave v_i = exp(ikx_i) of the nodes has at the points, up to aliases, the velocity S exp(ikx) with
-// S = sinc(kh/2)^(n+1) for B-splines of order n, and the gradients
-//   tpic: ik S,    apic: -i/(D h) dS^/dk with the transform S^ of N, which is ik S (1 + k^2 h^2/60 + ...)
+//   apic: C = D^-1 sum_i N_ip v_i (x) (x_i - x_p)    its first moments, D: h^2/4, h^2/3
+// A wave v_i = exp(ikx_i) of the nodes has at the points, up to aliases, the velocity S exp(ikx)
+// with S = sinc(kh/2)^(n+1) for B-splines of order n, and the gradients
+//   tpic: ik S,    apic: -i/(D h) dS^/dk with the transform S^ of N, ik S (1 + k^2 h^2/60 + ...)
 // for any n >= 2, so that tpic's is smaller by a third derivative,
 //   C_tpic = C_apic + h^2/60 v_xxx + ...
 // What comes back to the nodes is A times the wave, with C = ik g:
 //   A = S^2 + D k^2 a g,    a of apic,    so that A_apic - A_tpic = D k^4 h^2/60 + ...
-// With quadratic functions, aliases count, too: the third moments of N about a point depend on where it is
-// in its cell, with a mean square of 72 zeta(6) (h/2 pi)^6 = h^6/840, which tpic does not see and which
-// adds k^4 h^6/(4 * 840 D) = 2/7 D k^4 h^2/60 for apic.
-// and with apic the angular momentum sum_p m_p [x_p x v_p + D (C_yx - C_xy)] is that of the nodes, while
-// tpic changes it by the difference of the matrices. With linear functions D = f (1 - f) h^2 at
-// the distance f h from a node, and both are the same: the difference of the nodes over h.
+// With quadratic functions, aliases count, too: the third moments of N about a point depend on
+// where it is in its cell, with a mean square of 72 zeta(6) (h/2 pi)^6 = h^6/840, which tpic does
+// not see and which adds k^4 h^6/(4 * 840 D) = 2/7 D k^4 h^2/60 for apic. and with apic the angular
+// momentum sum_p m_p [x_p x v_p + D (C_yx - C_xy)] is that of the nodes, while tpic changes it by
+// the difference of the matrices. With linear functions D = f (1 - f) h^2 at the distance f h from
+// a node, and both are the same: the difference of the nodes over h.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-const char *const names[] = {"", "linear", "quadratic", "cubic"};
+static const char *const names[] = {"", "linear", "quadratic", "cubic"};
 
 /** What a field of nodes (h = 1) is at a point: velocity and gradient of tpic or apic. */
 struct AtPoint {
@@ -49,13 +47,13 @@ struct AtPoint {
 constexpr int CELLS = 8;    // of a wave length
 constexpr double K = 2.0 * M_PI / CELLS;
 
-double wave(double x)
+static double wave(double x)
 {
   return std::sin(K * x);
 }
 
 /** What becomes of a wave of the nodes when it goes to ppc points per cell and back. */
-double amplification(int n, bool tpic, int ppc, double k = K)
+static double amplification(int n, bool tpic, int ppc, double k = K)
 {
   double sum = 0.0, mass = 0.0;
   for (int p = -3 * ppc; p < 3 * ppc; p++) {
@@ -69,7 +67,7 @@ double amplification(int n, bool tpic, int ppc, double k = K)
   return sum / mass;
 }
 
-std::string medium(int dim, int n, bool tpic, int ppc, const std::string &more = "")
+static std::string medium(int dim, int n, bool tpic, int ppc, const std::string &more = "")
 {
   return box(dim, "lj", "p p p", strprintf("0 %d 0 4 0 4", CELLS)) +
       body("box", "density 2 neohookean 1e-12 0.3",
@@ -79,10 +77,8 @@ std::string medium(int dim, int n, bool tpic, int ppc, const std::string &more =
       "timestep 1e-12\nrun 0\n";
 }
 
-}    // namespace
-
-// a shear wave that points have from nodes: after a step all velocities and matrices are A times what they
-// were, to round-off, with either transfer; what they would be with the other one differs by a percent
+// a shear wave that points have from nodes: after a step all velocities and matrices are A times
+// what they were, to round-off, with either transfer; the other one differs by a percent
 TEST(Tpic, ShearWave)
 {
   for (const int dim : {2, 3})
@@ -178,9 +174,9 @@ TEST(Tpic, Force)
       }
 }
 
-// A free block whose velocity is a cubic polynomial: both give the points the same velocities; apic keeps the
-// angular momentum, tpic changes it by D times the difference of the matrices. With cubic functions, whose
-// third moments are zero, that is h^2/60 v_xxx inside the block. Both keep that of an affine motion.
+// A free block whose velocity is a cubic polynomial: both give the points the same velocities; apic
+// keeps the angular momentum, tpic changes it by D times the difference of the matrices. With cubic
+// functions that is h^2/60 v_xxx inside the block. Both keep that of an affine motion.
 TEST(Tpic, AngularMomentum)
 {
   for (const int n : {2, 3})

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -13,10 +13,8 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** Kinetic energy of the affine fields of points about these, m/2 C D C^T, D = h^2/4 or h^2/3. */
-double affine_energy(Scene &run, double D)
+static double affine_energy(Scene &run, double D)
 {
   if (!run.affine()) return 0.0;
   const int n = run.dim() * run.dim();
@@ -28,7 +26,7 @@ double affine_energy(Scene &run, double D)
 }
 
 /** A gas with much motion that nodes do not resolve; it flies across the lattice. */
-std::string gas(const std::string &options)
+static std::string gas(const std::string &options)
 {
   return plane("lj", "p p", "0 8 0 8", 1, 0.4) +
       body("box", "density 1.0 eos ideal/gas 1.4 pressure 1.0 viscosity artificial 2.0 1.0",
@@ -39,10 +37,8 @@ std::string gas(const std::string &options)
       "timestep 0.02\n";
 }
 
-}    // namespace
-
-// What transfers do to the kinetic energy of points, and what they give back as heat, differ by what the affine
-// fields of the points have got: on periodic axes nothing is lost, to round-off
+// What transfers do to the kinetic energy of points, and what they give back as heat, differ by
+// what the affine fields of the points have got: on periodic axes nothing is lost, to round-off
 PARAMETER_TEST(Balance, NothingIsLost, const char *,
                Values("", "shape cubic", "transfer pic", "transfer pic shape gimp",
                       "transfer pic shape cpdi", "transfer pic shape linear scheme musl",
@@ -71,13 +67,7 @@ TEST(Balance, RanksAgree)
 
 TEST(Balance, GoesOnAfterRestart)
 {
-  const std::string scene = gas("");
-  Continued run(
-      scene, 20,
-      "neighbor 0.4 bin\nfix grid all mpm 1.0 heat yes\nfix m all mpm/material density 1.0 "
-      "eos ideal/gas 1.4 pressure 1.0 viscosity artificial 2.0 1.0\n"
-      "compute e all mpm/energy\ntimestep 0.02\n",
-      20);
+  Continued run(gas(""), 20, lines_again(gas("")), 20);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
 
@@ -114,12 +104,10 @@ TEST(Solid, BecomesWarm)
   }
 }
 
-/* ----------------------------------------------------------------------
-   W.F. Noh, J. Comput. Phys. 72 (1987) 78, gamma = 5/3: density 4 and pressure 4/3 behind a shock of speed
-   1/3. Without heat, APIC loses energy in the shock, at each spacing and the more, the more steps there are:
-   a shock is always as wide as a few cells. Asked: energy and density to 1 %, as of the plateau of Sod's problem
-------------------------------------------------------------------------- */
-
+// W.F. Noh, J. Comput. Phys. 72 (1987) 78, gamma = 5/3: density 4 and pressure 4/3 behind a shock
+// of speed 1/3. Without heat, APIC loses energy in the shock, at each spacing and the more, the
+// more steps there are: a shock is always as wide as a few cells. Asked: energy and density to 1 %,
+// as of the plateau of Sod's problem
 struct Noh {
   double energy, density, pressure;    // relative to exact ones
 };
@@ -162,8 +150,8 @@ SERIAL_TEST(Noh, ConvergesWithHeat)
       }
 }
 
-// The same shock by a piston, a region that moves: its work, 4/3 times the way of 0.5, is the energy of the gas. The place
-// of its surface is known to a node spacing, which is 2 h of the way
+// The same shock by a piston, a region that moves: its work, 4/3 times the way of 0.5, is the
+// energy of the gas. The place of its surface is known to a node spacing, which is 2 h of the way
 SERIAL_TEST(Noh, Piston)
 {
   for (const std::string kind : {"slip", "separate"})
@@ -203,8 +191,6 @@ SERIAL_TEST(Noh, WithoutHeat)
   EXPECT_NEAR(flip.energy, 1.0, 0.01);
   EXPECT_NEAR(flip.density, 1.0, 0.01);
 }
-
-/* ---------------------------------------------------------------------- */
 
 TEST(BadInput, IsRefused)
 {

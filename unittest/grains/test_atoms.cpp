@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
@@ -72,17 +72,15 @@ PARAMETER_TEST(Atoms, HitABodyWithConstantMomentum, int, Values(1, 2, 5))
   EXPECT_LT(pushed, 0.5 * start[2]);    // the atoms did hit the body
 }
 
-/* ----------------------------------------------------------------------
-   A plate of points hits a crystal of atoms, twice as both are periodic: fcc, lj/cut 2.5, and a plate of its
-   density, Poisson number and c11, at 5 % of the speed of sound, 9.534. Energy of atoms and points, less what
-   the ledger has as errors of the method in the points, is that of the start, to 1e-4; momentum is constant, to
-   1e-10. Asked over 1e5 steps, in which the plate hits again and again. What is lost and not in the ledger belongs to the impacts
-   and is of first order in the time step: points move with the new velocities of the nodes, while the ledger counts the work of
-   forces at the mean of the old and the new one, and transfers change one into the other. With a step of 0.002 it is
-   0.7e-4 after 4e4 steps and 1.2e-4 after 1e5; with 0.001 it is half as much in the same time, and 0.2e-4 after 1e5 steps, which
-   take half a minute (crystal without plate: 3e-6).
-------------------------------------------------------------------------- */
-
+// A plate of points hits a crystal of atoms, twice as both are periodic: fcc, lj/cut 2.5, and a
+// plate of its density, Poisson number and c11, at 5 % of the speed of sound, 9.534. Energy of
+// atoms and points, less what the ledger has as errors of the method in the points, is that of the
+// start, to 1e-4; momentum is constant, to 1e-10. Asked over 1e5 steps, in which the plate hits
+// again and again. What is lost and not in the ledger belongs to the impacts and is of first order
+// in the time step: points move with the new velocities of the nodes, while the ledger counts the
+// work of forces at the mean of the old and the new one, and transfers change one into the other.
+// With a step of 0.002 it is 0.7e-4 after 4e4 steps and 1.2e-4 after 1e5; with 0.001 it is half as
+// much in the same time, and 0.2e-4 after 1e5 steps (crystal without plate: 3e-6).
 TEST(Crystal, KeepsMomentumAndEnergyWithAPlate)
 {
   struct Case {

@@ -1,11 +1,11 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi ranks
 // mpi: 1 2
 
-// Fix mpm/dt grains: the time step as a share of a collision of grains, whose duration has a closed form, for each pair
-// style that tells its stiffness; number of steps in a collision, and energy of the rebound.
+// Fix mpm/dt grains: the time step as a share of a collision of grains, whose duration has a closed
+// form, for each pair style that tells its stiffness; and energy of the rebound.
 
 #include "mpm_lammps.h"
 
@@ -41,6 +41,9 @@ static std::string two_grains(double speed)
              -speed);
 }
 
+static const std::string pair_hooke = "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n",
+                         tenth = "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n";
+
 static double reduced_mass()
 {
   return MA * MB / (MA + MB);
@@ -63,14 +66,14 @@ static double hertz_time(double K, double v, double m = reduced_mass())
 }
 
 struct Law {
-  const char *name, *pair;
+  std::string name, pair;
   double duration;
 };
 
 constexpr double SPEED = 0.3, KN = 300.0, YOUNG = 500.0, NU = 0.25;
 static const double MATERIAL = 4.0 / 3.0 * YOUNG / (2.0 * (1.0 - NU * NU));
 static const std::vector<Law> laws = {
-    {"hooke", "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n", hooke_time(KN)},
+    {"hooke", pair_hooke, hooke_time(KN)},
     {"hooke_history", "pair_style gran/hooke/history 300 NULL 0 NULL 0 0\npair_coeff * *\n",
      hooke_time(KN)},
     {"hertz_history", "pair_style gran/hertz/history 300 NULL 0 NULL 0 0\npair_coeff * *\n",
@@ -98,11 +101,12 @@ static const std::vector<Law> laws = {
 
 class GrainSteps : public ::testing::TestWithParam<Law> {};
 INSTANTIATE_TEST_SUITE_P(All, GrainSteps, ValuesIn(laws), [](const auto &info) {
-  return std::string(info.param.name);
+  return info.param.name;
 });
 
-// The time step is the share of the closed form in all of the collision. Of the energy, the rule of LAMMPS's nve may gain or
-// lose at first and last touch, which are between two steps, the share (omega dt)^2 of what an overlap of one step stores
+// The time step is the share of the closed form in all of the collision. Of the energy, the rule of
+// LAMMPS's nve may gain or lose at first and last touch, which are between two steps, the share
+// (omega dt)^2 of what an overlap of one step stores
 TEST_P(GrainSteps, AreAShareOfTheCollision)
 {
   const Law law = GetParam();
@@ -151,7 +155,7 @@ SERIAL_TEST(GrainSteps, DampedRebound)
   for (int n = 0; n < 60 && run.evaluate("vcm(b,x)-vcm(a,x)") < 0.0; n++) run.commands("run 1\n");
   for (int n = 0; n < 60 && run.evaluate("xcm(b,x)-xcm(a,x)") < RA + RB; n++)
     run.commands("run 1\n");
-  // with limit_damping grains part when the force would pull, at the time t1: tan(omega t1) = -gamma omega/(k/m - gamma^2/2)
+  // with limit_damping grains part at tan(omega t1) = -gamma omega/(k/m - gamma^2/2)
   const double k = KN / reduced_mass();
   const double t1 = std::atan2(gamma * omega, gamma * gamma / 2.0 - k) / omega;
   const double e = std::exp(-gamma / 2.0 * t1) *
@@ -197,8 +201,9 @@ static Contact collide(const std::string &units, const std::string &pair)
   return result;
 }
 
-// In units where a force of 1 gives a mass of 1 another acceleration than 1, the collision is the same with forces over this
-// number, and takes the same steps: springs, damping by mass, by its velocity alone, and beyond the critical value
+// In units where a force of 1 gives a mass of 1 another acceleration than 1, the collision is the
+// same with forces over this number, and takes the same steps: springs, damping by mass, by its
+// velocity alone, and beyond the critical value
 SERIAL_TEST(GrainSteps, AreTheSameInOtherUnits)
 {
   const double ftm2v = 1.0 / 1.0364269e-4, nktv2p = 1.6021765e6;    // of metal, as in LAMMPS
@@ -226,7 +231,7 @@ SERIAL_TEST(GrainSteps, AreTheSameInOtherUnits)
     EXPECT_GT(lj.touching, 10) << with(1.0);
   }
 
-  // the damping damp sqrt(m k) v of LAMMPS has no factor of units: in those of metal it is above the critical one
+  // the damping damp sqrt(m k) v of LAMMPS has no factor of units: in metal it is above critical
   const double e = std::log(0.9), damp = -2.0 * e / std::hypot(PI, e), k = KN / ftm2v;
   Scene run(replaced(two_grains(SPEED), "units lj", "units metal") +
             strprintf("pair_style granular\npair_coeff * * hooke %.17g 0.9 tangential "
@@ -238,7 +243,7 @@ SERIAL_TEST(GrainSteps, AreTheSameInOtherUnits)
   EXPECT_NEAR(run.lmp->update->dt * fastest / (0.1 * PI), 1.0, 1.0e-6);
 }
 
-// a grain that rests on another one: with Hertz's force of the free collision that compresses as much
+// a grain rests on another one: with Hertz's force of the free collision that compresses as much
 SERIAL_TEST(GrainSteps, PairUnderLoad)
 {
   const double overlap = 0.01, K = KN * std::sqrt(radius());
@@ -285,23 +290,23 @@ TEST(GrainSteps, WallUnderLoad)
   EXPECT_NEAR(wiggles.lmp->update->dt / (0.1 * hertz_time(K, v, MB)), 1.0, 1.0e-6);
 }
 
+static const std::string skin = "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n",
+                         at_point = skin +
+    "displace_atoms b move 6.57 -0.25 -0.25\nvelocity b set 0.5 0 0\n";
+
 // walls, frozen grains, and a grain on points
 SERIAL_TEST(GrainSteps, OtherPartners)
 {
-  const std::string hooke = "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n";
-  const std::string step = "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n";
-  Scene wall(two_grains(0.0) + hooke +
-             "fix w grains wall/gran hooke 5000 NULL 0 NULL 0 0 zplane 0 8\n" + step);
+  Scene wall(two_grains(0.0) + pair_hooke +
+             "fix w grains wall/gran hooke 5000 NULL 0 NULL 0 0 zplane 0 8\n" + tenth);
   EXPECT_NEAR(wall.lmp->update->dt, 0.1 * PI * std::sqrt(MB / 5000.0), 1.0e-10);
   EXPECT_THAT(wall.error("fix step all mpm/dt 0.5 grains 0.1 min 1.0\nrun 0\n"),
               HasSubstr("collision of grain 10 with a wall"));
 
-  Scene frozen(two_grains(SPEED) + hooke + "fix hold a freeze\n" + step);
+  Scene frozen(two_grains(SPEED) + pair_hooke + "fix hold a freeze\n" + tenth);
   EXPECT_NEAR(frozen.lmp->update->dt, 0.1 * PI * std::sqrt(MB / KN), 1.0e-10);
 
-  Scene points(two_grains(SPEED) + hooke +
-               "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n" +
-               "displace_atoms b move 6.57 -0.25 -0.25\nvelocity b set 0.5 0 0\n" + step);
+  Scene points(two_grains(SPEED) + pair_hooke + at_point + tenth);
   const double mp = 1.0 / 8.0;
   EXPECT_NEAR(points.lmp->update->dt, 0.1 * PI * std::sqrt(MB * mp / (MB + mp) / KN), 1.0e-10);
 }
@@ -309,34 +314,27 @@ SERIAL_TEST(GrainSteps, OtherPartners)
 // points that take one step in three of the run: the share is that of a step of theirs
 TEST(GrainSteps, OfPointsWithLongSteps)
 {
-  const std::string at_point = "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n"
-                               "displace_atoms b move 6.57 -0.25 -0.25\n"
-                               "velocity b set 0.5 0 0\n";
-  const std::string step = "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n";
   const std::string scene = replaced(two_grains(SPEED), "every 1", "every 3");
-  const std::string hooke = "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n";
-  Scene points(scene + hooke + at_point + step);
+  Scene points(scene + pair_hooke + at_point + tenth);
   const double mp = 1.0 / 8.0;
   EXPECT_NEAR(points.lmp->update->dt, 0.1 / 3.0 * PI * std::sqrt(MB * mp / (MB + mp) / KN),
               1.0e-10);
 
-  Scene grains(scene + hooke + step);
+  Scene grains(scene + pair_hooke + tenth);
   EXPECT_NEAR(grains.lmp->update->dt, 0.1 * PI * std::sqrt(reduced_mass() / KN), 1.0e-10);
 
   // walls hold points of their group, too
-  const std::string weak = "pair_style gran/hooke 0.01 NULL 0 NULL 0 0\npair_coeff * *\n";
-  Scene wall(scene + weak + "fix skin far mpm/surface\nneigh_modify exclude type 1 1\n" +
-             "fix w far wall/gran hooke 5000 NULL 0 NULL 0 0 zplane 0 8\n" + step);
+  Scene wall(scene + replaced(pair_hooke, "300", "0.01") + skin +
+             "fix w far wall/gran hooke 5000 NULL 0 NULL 0 0 zplane 0 8\n" + tenth);
   EXPECT_NEAR(wall.lmp->update->dt, 0.1 / 3.0 * PI * std::sqrt(mp / 5000.0), 1.0e-10);
 }
 
-// a grain that comes from far away, between two looks, with points that take one step in three of the run
+// a grain comes from far away, between two looks, with points that take one step in three
 TEST(GrainSteps, ArriveBetweenLooks)
 {
   const double speed = 6.0;
   Scene run(replaced(two_grains(speed), "every 1", "every 3") + "displace_atoms b move 4.0 0 0\n" +
-            "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n"
-            "fix step all mpm/dt 0.5 max 0.01 grains 0.05 every 1000\nrun 0\n");
+            pair_hooke + "fix step all mpm/dt 0.5 max 0.01 grains 0.05 every 1000\nrun 0\n");
   EXPECT_EQ(run.lmp->update->dt, 0.01);
   int touching = 0;
   for (int n = 0; n < 200; n++) {
@@ -349,12 +347,12 @@ TEST(GrainSteps, ArriveBetweenLooks)
   EXPECT_NEAR(touching, 20, 2);
 }
 
-// grains go on after all points have left: when nothing collides, nothing limits the time step, and it stays as it is; when
-// something does later, it counts
+// grains go on after all points have left: when nothing collides, nothing limits the time step, and
+// it stays as it is; when something does later, it counts
 TEST(GrainSteps, GoOnWithoutPoints)
 {
-  const std::string hooke = "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n"
-                            "neigh_modify exclude type 1 1 exclude type 1 2 exclude type 1 3\n";
+  const std::string hooke =
+      pair_hooke + "neigh_modify exclude type 1 1 exclude type 1 2 exclude type 1 3\n";
   for (int every : {1, 3}) {
     const auto scene = [&](const std::string &options) {
       return replaced(two_grains(0.0), "every 1", strprintf("bad delete every %d", every)) + hooke +
@@ -393,35 +391,30 @@ TEST(GrainSteps, OnRanks)
   EXPECT_LT(std::fabs(both[1]), SPEED);
 }
 
-// files that are written in the collision, and after it, when the time step grows by a factor at each look
+// files written in the collision, and after it, when the time step grows by a factor at each look
 SERIAL_TEST(GrainSteps, GoOnFromARestartFile)
 {
   const std::string pair = laws[5].pair, step = "fix step all mpm/dt 0.5 grains 0.05\n";
   for (const bool parted : {false, true}) {
     const ScratchFile file("restart");
-    const std::string before = parted ? "run 45\n" : "run 12\n";
-    Scene whole(two_grains(SPEED) + pair + step + before);
+    const auto scene = two_grains(SPEED) + pair + step;
+    Scene whole(scene + (parted ? "run 45\n" : "run 12\n"));
     const double then = whole.lmp->update->dt;
     EXPECT_EQ(whole.evaluate("vcm(b,x)-vcm(a,x)") > 0.9 * SPEED, parted);
-    whole.commands("run 20\n");
+    whole.commands("write_restart " + file.name + "\nrun 20\n");
     if (parted) EXPECT_NEAR(whole.lmp->update->dt / then, 1.05 * 1.05, 1.0e-9);
-    Scene parts(two_grains(SPEED) + pair + step + before + "write_restart " + file.name +
-                "\nclear\nread_restart " + file.name +
-                "\nneighbor 0.5 bin\ncomm_modify vel yes\nfix grid all mpm 1.0\n"
-                "fix m far mpm/material density 1.0 neohookean 1.0e-4 0.3\n"
-                "fix move grains nve/sphere\n" +
-                pair + step + "run 20\n");
+    Scene parts("read_restart " + file.name + "\n" +
+                lines_again(scene, {"pair_style", "pair_coeff"}) + "run 20\n");
     EXPECT_EQ(parts.lmp->update->dt, whole.lmp->update->dt);
     EXPECT_EQ(parts.evaluate("time"), whole.evaluate("time"));
   }
 }
 
-// A run in two parts takes the steps of one without a break, although the lists of its second part have pairs that those of
-// the first do not have yet: grains that come near while the time step grows, as points slow down
+// A run in two parts takes the steps of one without a break, although its second part has lists
+// with more pairs: grains come near while the time step grows, as points slow down
 TEST(GrainSteps, PartsOfARunWithOtherLists)
 {
-  const std::string scene = two_grains(SPEED) +
-      "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n"
+  const std::string scene = two_grains(SPEED) + pair_hooke +
       "neigh_modify exclude type 1 1\ndisplace_atoms b move 0.68 0 0\n"
       "velocity far set 10 0 0\nfix drag far viscous 1\n"
       "fix step all mpm/dt 0.5 grains 1.0\n";
@@ -436,7 +429,7 @@ TEST(GrainSteps, PartsOfARunWithOtherLists)
     EXPECT_NEAR(parts.evaluate("time"), time, 1.0e-12 * time) << first;
   }
   // grains that have other velocities, so that they do not meet, are another state
-  Scene apart(two_grains(SPEED) + "pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n" +
+  Scene apart(two_grains(SPEED) + pair_hooke +
               "fix step all mpm/dt 0.5 max 0.1 grains 0.1\nrun 2\n");
   EXPECT_NEAR(apart.lmp->update->dt, 0.1 * hooke_time(KN), 1.0e-10);
   apart.commands("velocity b set 0.3 0 0\nrun 0\n");
@@ -447,17 +440,17 @@ TEST(GrainSteps, PartsOfARunWithOtherLists)
 
 SERIAL_TEST(GrainSteps, AreRefusedWithTheReason)
 {
-  const std::string step = "fix step all mpm/dt 0.5 grains 0.1\nrun 0\n";
   const std::vector<std::array<std::string, 2>> bad = {
       {"", "needs a pair style of grains: gran/hooke"},
       {"pair_style zero 1.0\npair_coeff * *\n", "needs a pair style of grains"},
       {"pair_style granular\npair_coeff * * jkr 500 0 0.25 1 tangential mindlin NULL 0 0\n",
        "normal model jkr .* use keyword max"},
-      {"pair_style gran/hooke 300 NULL 0 NULL 0 0\npair_coeff * *\n"
-       "fix w grains wall/gran granular dmt 500 0 0.25 1 tangential mindlin NULL 0 0 zplane 0 8\n",
+      {pair_hooke +
+           "fix w grains wall/gran granular dmt 500 0 0.25 1 tangential mindlin NULL 0 0 zplane 0 "
+           "8\n",
        "normal model dmt"}};
   for (const auto &[text, reason] : bad)
-    EXPECT_THAT(Scene().error(two_grains(SPEED) + text + step), ::testing::ContainsRegex(reason));
+    EXPECT_THAT(Scene().error(two_grains(SPEED) + text + tenth), ::testing::ContainsRegex(reason));
   for (const char *share : {"0", "-0.1", "1.1"})
     EXPECT_THAT(Scene().error(two_grains(SPEED) + "fix step all mpm/dt 0.5 grains " + share + "\n"),
                 HasSubstr("grains must be above 0 and at most 1"));

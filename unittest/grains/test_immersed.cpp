@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics restart
 // mpi: 1 4
@@ -39,8 +39,7 @@ static std::string rest(const std::string &fix, const std::string &fluid = "eos 
       "thermo_modify norm no\n";
 }
 
-/** Pressure of the points of fluid over their height along an axis, in a part of a column that is periodic
- *  over the length. */
+/** Pressure of fluid over its height along an axis, in a part of a column of a periodic length. */
 struct Pressure {
   double height = 0.0, mean = 0.0, slope = 0.0;
 
@@ -62,8 +61,8 @@ struct Pressure {
   }
 };
 
-/** Pressure gradient inside of a bed from 4 to 12 of a column of 16, and pressure drop over it, of fluid that
- *  is driven through it by a force per mass. */
+/** Pressure gradient inside of a bed from 4 to 12 of a column of 16, and pressure drop over it, of
+ *  fluid that is driven through it by a force per mass. */
 struct Drop {
   double gradient, all;
 
@@ -80,8 +79,7 @@ static double count(Scene &run, const char *group)
   return run.lmp->group->count(run.lmp->group->find(group));
 }
 
-/** Forces of the laws of drag on spheres, per volume of a sphere: diameter d, velocity w relative to the
- *  fluid, porosity eps. */
+/** Forces of drag per volume of a sphere: diameter d, relative velocity w, porosity eps. */
 static double drag_per_volume(const std::string &law, double mu, double d, double w, double eps)
 {
   const double Re = w * d / mu;
@@ -99,8 +97,9 @@ static double drag_per_volume(const std::string &law, double mu, double d, doubl
   return (150.0 * mu * (1.0 - eps) * w / (d * d) + 1.75 * w * w / d) / (eps * eps * eps);
 }
 
-/** Velocity of viscous fluid at a point force F which moves with the velocity v in a periodic box for a time t, linear in it
- *  (C.W. Oseen), where quadratic shape functions spread the force and interpolate the velocity. Spacing and density are 1. */
+/** Velocity of viscous fluid at a point force F which moves with the velocity v in a periodic box
+ *  for a time t, linear in it (C.W. Oseen), where quadratic shape functions spread the force and
+ *  interpolate the velocity. Spacing and density are 1. */
 static double dragged_along(double F, double v, double mu, double t, const double *box)
 {
   const auto square = [](double k) {
@@ -121,8 +120,9 @@ static double dragged_along(double F, double v, double mu, double t, const doubl
   return F / (box[0] * box[1] * box[2]) * sum;
 }
 
-// Terminal velocity of a single sphere, by the law of Schiller and Naumann. A grain drags along the fluid of its own cells, so
-// that it sinks faster, by that velocity at the most: the viscosity of the transfers is added to that of the fluid there.
+// Terminal velocity of a single sphere, by the law of Schiller and Naumann. A grain drags along the
+// fluid of its own cells, so that it sinks faster, by that velocity at the most: the viscosity of
+// the transfers is added to that of the fluid there.
 SERIAL_TEST(Immersed, SinksWithTheTerminalVelocity)
 {
   struct Case {
@@ -182,8 +182,8 @@ static void expect_buoyancy(Scene &run, int axis, double volume, const double *m
     }
 }
 
-// A column of water at rest under gravity: the force on a grain is its volume times the gradient of the
-// pressure of the points; the floor carries it; a grain of the density of water stays where it is
+// A column of water at rest under gravity: the force on a grain is its volume times the gradient of
+// pressure, also at the floor; a grain of the density of water stays where it is
 SERIAL_TEST(Immersed, BuoyancyIsTheGradientOfPressure)
 {
   Scene run(
@@ -207,8 +207,7 @@ SERIAL_TEST(Immersed, BuoyancyIsTheGradientOfPressure)
   EXPECT_NEAR(measured("its drag", mean[3] / volume), 0.0, 0.02);
 }
 
-// Fluid that accelerates pushes grains with the force of Archimedes in it: what is as dense as the fluid
-// goes along, without drag
+// Fluid that accelerates pushes grains by Archimedes: what is as dense goes along without drag
 SERIAL_TEST(Immersed, ArchimedesInFluidThatAccelerates)
 {
   for (const char *scheme : {"transfer apic", "transfer flip 1.0 scheme musl",
@@ -276,8 +275,7 @@ SERIAL_TEST(Immersed, LawsOfDrag)
   }
 }
 
-// Grains at random places have no ends of beds among them: their drag is that of the mean porosity, but for
-// what the mapped porosity scatters
+// Grains at random places have the drag of the mean porosity, but for the scatter of the mapped one
 static void random_places(const std::string &box, const std::string &density, int grains, double d,
                           double volume, double share)
 {
@@ -315,8 +313,8 @@ SERIAL_TEST(Immersed, EndsAtTheSurface)
   }
 }
 
-// A dense suspension at rest as a whole: drag carries what the weight of its grains is above that of
-// displaced fluid, though the fluid carries the rest, too
+// A dense suspension at rest as a whole: drag carries what the weight of its grains is above that
+// of displaced fluid, though the fluid carries the rest, too
 SERIAL_TEST(Immersed, SuspensionSettlesWithTheLaw)
 {
   const double d = 0.5, volume = PI / 6.0 * d * d * d, cell = 0.625, density = 3.0, mu = 0.1;
@@ -340,8 +338,8 @@ SERIAL_TEST(Immersed, SuspensionSettlesWithTheLaw)
               1.0, 0.002);
 }
 
-/** Flow through a bed that fills half of a periodic column, driven by a force on the fluid: its pressure falls as
- *  Ergun's equation has it for the flux, inside and over all of it. */
+/** Flow through a bed that fills half of a periodic column, driven by a force on the fluid: its
+ *  pressure falls as Ergun's equation has it for the flux, inside and over all of it. */
 static void flow_through_a_bed(int dim, double mu, double d, const std::string &box,
                                const std::string &grains, double volume)
 {
@@ -462,7 +460,7 @@ TEST(Immersed, IsTheSameAcrossPeriodicFaces)
     EXPECT_NEAR(inside.fix_vector("drag", 6)[k], across.fix_vector("drag", 6)[k], 1.0e-10);
 }
 
-// Neighbor lists and messages of the grains alone; LAMMPS then sets to zero the forces of these alone
+// Neighbor lists and messages of grains alone; LAMMPS then sets only their forces to zero
 TEST(Immersed, NeedsNoPointsInNeighborLists)
 {
   const std::string
@@ -481,8 +479,9 @@ SERIAL_TEST(Immersed, ClosesTheLedger)
   closes_the_ledger(run);
 }
 
-// Fluid as a whole streams through grains that are held, one in each cell: there is nothing but its kinetic energy, and drag takes it, in
-// steps as short and as long as the time in which it comes to rest. No part of it is a loss of the transfer
+// Fluid as a whole streams through grains that are held, one in each cell: there is nothing but its
+// kinetic energy, and drag takes it, in steps as short and as long as the time in which it comes to
+// rest. No part of it is a loss of the transfer
 SERIAL_TEST(Immersed, WorkOfDragIsTheKineticEnergy)
 {
   for (const double dt : {0.01, 0.5}) {
@@ -539,8 +538,7 @@ SERIAL_TEST(Immersed, RefusesBadInput)
                "use atom_style hybrid sphere mpm");
 }
 
-/* ---- 2d: a grain is a disc of unit depth, with the drag of spheres of its diameter and of as much volume */
-
+// 2d: a grain is a disc of unit depth, with the drag of spheres of its diameter and volume
 /** Square array of discs that are held, per disc. */
 static double drag_on_disc(double cell, double diameter, const std::string &law, double speed)
 {
@@ -566,8 +564,8 @@ SERIAL_TEST(ImmersedPlane, LawsOfDrag)
     }
 }
 
-// That of Ergun is not far from what cylinders across slow flow feel: A.S. Sangani, A. Acrivos, Int. J.
-// Multiphase Flow 8 (1982) 193, table 1, force / (viscosity velocity)
+// That of Ergun is not far from what cylinders across slow flow feel: A.S. Sangani, A. Acrivos,
+// Int. J. Multiphase Flow 8 (1982) 193, table 1, force / (viscosity velocity)
 SERIAL_TEST(ImmersedPlane, ErgunIsNearCylindersInSlowFlow)
 {
   const struct {
@@ -583,7 +581,7 @@ SERIAL_TEST(ImmersedPlane, ErgunIsNearCylindersInSlowFlow)
   }
 }
 
-// The force on a disc in water at rest is its volume times the gradient of the pressure of the points
+// The force on a disc in water at rest is its volume times the gradient of pressure
 SERIAL_TEST(ImmersedPlane, BuoyancyIsTheGradientOfPressure)
 {
   Scene run(flat("0 8 0 20", "p f p", "transfer pic") +

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics
 // mpi: 1 2
@@ -63,10 +63,7 @@ PARAMETER_TEST(Surface, IsTheOutermostLayer, const char *,
 // On a fixed face of the box nothing can be between it and the body, but a gap has a surface.
 TEST(Surface, IsNotOnAFixedFace)
 {
-  const std::string box =
-      "units lj\nboundary f p f\natom_style hybrid sphere mpm\nneighbor 0.3 multi\n"
-      "comm_modify vel yes mode multi\nregion box block 0 12 0 12 0 12\n"
-      "create_box 2 box\n";
+  const auto box = replaced(replaced(head, "p p f", "f p f"), "-1 12", "0 12");
   struct {
     const char *options, *gap;
     int expected;
@@ -203,8 +200,8 @@ TEST(SurfaceContact, IsThatOfAllPoints)
 }
 
 // At set-up all points have the largest radius, and then those at the surface that of their volume:
-// ghosts, too. With plain bins a pair is found with the lower of the two as the owner, which is the grain
-// for a grain below the slab: what it touches are ghosts, where it is on a corner of the periodic box.
+// ghosts, too. With plain bins a pair is found with the lower of the two as the owner, which is the
+// grain below the slab: on a corner of the periodic box it touches ghosts.
 TEST(SurfaceContact, IsTheSameAcrossPeriodicFacesFromSetUpOn)
 {
   std::vector<double> force[2];
@@ -231,20 +228,27 @@ TEST(SurfaceContact, IsTheSameAcrossPeriodicFacesFromSetUpOn)
   for (int d = 0; d < 3; d++) EXPECT_NEAR(force[1][d], force[0][d], 1.0e-12 * -force[0][2]);
 }
 
-// A group of grains and surface alone can be in the neighbor lists and be the ghosts of other ranks.
+// A group of grains and surface alone can be in neighbor lists and be ghosts of other ranks.
+static const char *const set_by_hand = "neighbor 0.3 multi\ncomm_modify vel yes mode multi\n";
 static const std::string plain = "fix surf block mpm/surface\n";
 static const std::string skin = "group skin union grains block\natom_modify first skin\n"
                                 "fix surf block mpm/surface group skin\n"
                                 "neigh_modify include skin\ncomm_modify group skin\n";
 // the same in one keyword, without the lines of head and contact
 static const std::string listed = "fix surf block mpm/surface lists grains\n";
-static const std::string bare_head =
-    replaced(head, "neighbor 0.3 multi\ncomm_modify vel yes mode multi\n", "neighbor 0.3 bin\n");
+static const std::string bare_head = replaced(head, set_by_hand, "neighbor 0.3 bin\n");
 static const std::string bare_contact = replaced(contact, "neigh_modify exclude type 1 1\n", "");
 static const std::string rest = contact + "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\n";
 
 // with every, torques and forces of the steps between are those of several neighbor lists
 static const std::string every3 = replaced(grains, "mpm 1.0\n", "mpm 1.0 every 3\n");
+
+/** What follows after a restart file of a scene is read. */
+static std::string next_of(const std::string &start, const std::string &surface,
+                           const std::string &last)
+{
+  return set_by_hand + start.substr(0, start.find('\n') + 1) + fixes + surface + last;
+}
 
 TEST(SurfaceContact, IsTheSameOnAnyNumberOfRanks)
 {
@@ -294,15 +298,13 @@ TEST(SurfaceContact, GoesOnFromARestartFile)
   for (const auto &start : {grains, every3})    // there, in the middle of a step of the points
     for (const auto &surface : {plain, skin}) {
       Continued run(head + start + fixes + surface + rest, start == grains ? 60 : 61,
-                    "neighbor 0.3 multi\ncomm_modify vel yes mode multi\n" +
-                        start.substr(0, start.find('\n') + 1) + fixes + surface + rest,
-                    80);
+                    next_of(start, surface, rest), 80);
       EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
     }
 }
 
-// The surface, and lists, are those of the step in which the file was written, in both runs. (Without
-// damping and friction: LAMMPS takes velocities of the middle of a step, but at set-up those of its end.)
+// The surface, and lists, are those of the step in which the file was written, in both runs.
+// (Without damping: LAMMPS takes velocities of the middle of a step, at set-up of its end.)
 TEST(SurfaceContact, GoesOnFromAFileOfTheRestartCommand)
 {
   const std::string elastic = replaced(rest, "hooke 100.0 0.5 tangential linear_nohistory 0.5 0.4",
@@ -312,15 +314,14 @@ TEST(SurfaceContact, GoesOnFromAFileOfTheRestartCommand)
       const ScratchFile file("later.50");
       Scene whole(head + start + fixes + surface + elastic + "restart 50 " +
                   replaced(file.name, ".50", "") + "\nrun 90\n");
-      Scene again("read_restart " + file.name +
-                  "\nneighbor 0.3 multi\ncomm_modify vel yes mode multi\n" +
-                  start.substr(0, start.find('\n') + 1) + fixes + surface + elastic + "run 40\n");
+      Scene again("read_restart " + file.name + "\n" + next_of(start, surface, elastic) +
+                  "run 40\n");
       EXPECT_TRUE(identical(whole.gather(), again.gather()));
     }
 }
 
-// Clumps of spheres that LAMMPS moves as rigid bodies: what they lose of momentum, the block has. When
-// forces are known, velocities of grains and points are those of half steps.
+// Clumps of spheres that LAMMPS moves as rigid bodies: what they lose of momentum, the block has.
+// When forces are known, velocities of grains and points are those of half steps.
 PARAMETER_TEST(Clump, PushesWithConstantMomentum, const char *,
                Values("fix move grains rigid single",
                       "fix body all property/atom i_body ghost yes\n"
@@ -417,7 +418,7 @@ TEST(Surface, RefusesMistakes)
                "use atom_style hybrid sphere mpm");
 }
 
-// Points of a body touch each other when they have their usual diameter: a pair style of grains that acts between them, too, is told
+// Points of a body touch each other: a pair style of grains that acts between them, too, is told
 SERIAL_TEST(Surface, WarnsOfPointsThatTouchAsGrains)
 {
   const std::string
@@ -434,14 +435,10 @@ SERIAL_TEST(Surface, WarnsOfPointsThatTouchAsGrains)
   const auto lines = lines_that_say(head + block + "run 1\n", said);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], testing::HasSubstr("Fix mpm grid: at least 144 pairs"));
-  EXPECT_EQ(lines_that_say(head + block + exclude + "run 1\n", said).size(), 0u);
-  // two bodies of a type each, which are to touch
-  EXPECT_EQ(lines_that_say(head + block + exclude +
-                               "neigh_modify exclude type 2 2\nset region upper type 2\nrun 1\n",
-                           said)
-                .size(),
-            0u);
-  EXPECT_EQ(lines_that_say(head + block + "set group all diameter 0.4\nrun 1\n", said).size(), 0u);
+  // the last: two bodies of a type each, which are to touch
+  for (const auto &more : {exclude, std::string("set group all diameter 0.4\n"),
+                           exclude + "neigh_modify exclude type 2 2\nset region upper type 2\n"})
+    EXPECT_EQ(lines_that_say(head + block + more + "run 1\n", said).size(), 0u) << more;
 
   const ScratchFile file(
       "rope.msh",

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -7,16 +7,14 @@
 
 // Heat of friction: keyword heat of fix mpm/contact, fix mpm/boundary, and fix mpm/rigid.
 
-#include "mpm_lammps.h"
-
+#include "heat/heat_testing.h"
 #include "mesh/stl_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-// A block of 3000 kg/m^2 and 10 m/s is pressed on a base with 1 MPa and braked by friction of 0.3 within 0.1 s.
-// Density times specific heat is that of steel, density is higher, so that the block is no higher than heat gets
+// A block of 3000 kg/m^2 and 10 m/s is pressed on a base with 1 MPa and braked by friction of 0.3
+// within 0.1 s. Density times specific heat is that of steel, density is higher, so that the block
+// is no higher than heat gets
 
 constexpr double STEEL = 7800.0 * 500.0, K = 50.0, PRESSURE = 1.0e6, MU = 0.3, SPEED = 10.0,
                  END = 0.1;
@@ -74,7 +72,7 @@ struct Braked {
 };
 
 /** At rest until the pressure is there, then with its speed. */
-void press(Scene &run, const Braked &b)
+static void press(Scene &run, const Braked &b)
 {
   run.commands(strprintf("velocity block set 0 0 0\ntimestep %.17g\nrun %d\nreset_timestep 0\n",
                          b.dt(), (int) (1.2 * b.ramp / b.dt())) +
@@ -84,7 +82,7 @@ void press(Scene &run, const Braked &b)
 }
 
 /** Up to this time, as nearly as steps allow. */
-void run_until(Scene &run, const Braked &b, double time)
+static void run_until(Scene &run, const Braked &b, double time)
 {
   const auto done = (double) run.lmp->update->ntimestep;
   run.commands(
@@ -92,7 +90,7 @@ void run_until(Scene &run, const Braked &b, double time)
 }
 
 /** Temperature at the face y = 0 of a body of this type, from the two rows of points next to it. */
-double at_face(Scene &run, const std::string &material, int type, double h)
+static double at_face(Scene &run, const std::string &material, int type, double h)
 {
   auto *fix = run.material(material);
   const int column = fix->find_history("temperature");
@@ -106,52 +104,35 @@ double at_face(Scene &run, const std::string &material, int type, double h)
   return 1.5 * rows[0] / n[0] - 0.5 * rows[1] / n[1];
 }
 
-double mean(Scene &run, const std::string &material)
+static double mean(Scene &run, const std::string &material)
 {
-  auto *fix = run.material(material);
-  const int column = fix->find_history("temperature");
-  double sum = 0.0, n = 0.0;
-  for (int i = 0; i < run.n(); i++)
-    if (run.lmp->atom->mask[i] & fix->groupbit) {
-      sum += fix->history[i][column];
-      n++;
-    }
-  return sum / n;
+  return Warm(run, material).mean();
 }
 
-double heat_of(Scene &run, const std::string &material)
+static double heat_of(Scene &run, const std::string &material)
 {
-  auto *fix = run.material(material);
-  const int column = fix->find_history("temperature");
-  double sum = 0.0;
-  for (int i = 0; i < run.n(); i++)
-    if (run.lmp->atom->mask[i] & fix->groupbit) sum += run.mass()[i] * fix->history[i][column];
-  double all;
-  MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, run.lmp->world);
-  return all;
+  return Warm(run, material).heat();
 }
 
 /** Rise at the face, for this sum of the effusivities of the bodies that heat flows to. */
-double rise(double t, double effusivities)
+static double rise(double t, double effusivities)
 {
   return 2.0 * MU * PRESSURE * SPEED / (effusivities * std::sqrt(PI)) * std::sqrt(t) *
       (1.0 - 2.0 * t / (3.0 * END));
 }
 const double EFFUSIVITY = std::sqrt(K * STEEL);
 
-}    // namespace
-
 // benchmark M5: both bodies of steel. Highest temperature at half of the time: 18.06853 K
 SERIAL_TEST(Brake, HeatsBothFaces)
 {
   EXPECT_NEAR(rise(0.5 * END, 2.0 * EFFUSIVITY), 18.06853, 1e-5);
   double error[3];
-  for (int k = 0; k < 3; k++) {
+  for (const int k : first_of(2, {0, 1, 2})) {
     Braked b = {2.0 * (1 << k)};
     b.ramp = 0.02;
     Scene run(b.scene());
     press(run, b);
-    EXPECT_EQ(run.fix("heat")->compute_scalar(), 0.0);
+    EXPECT_EQ(heat_in(run), 0.0);
     run_until(run, b, 0.5 * END);
     const double T = at_face(run, "m1", 1, b.h()), U = at_face(run, "m2", 2, b.h());
     error[k] = measured(strprintf("h = %.3g mm, error at half of the time", 1e3 * b.h()),
@@ -159,9 +140,11 @@ SERIAL_TEST(Brake, HeatsBothFaces)
     EXPECT_NEAR(T / U, 1.0, 0.01);
     run_until(run, b, END);
     const double end = measured("error at the end", at_face(run, "m1", 1, b.h()) / 12.77638 - 1.0);
-    if (k == 2) EXPECT_NEAR(end, 0.0, 0.03);
-    EXPECT_NEAR(measured("heat per area", run.fix("heat")->compute_scalar() / b.width()), 150000.0,
-                300.0);
+    if (k == 2) {
+      EXPECT_NEAR(error[2], 0.0, 0.03);
+      EXPECT_NEAR(end, 0.0, 0.03);
+    }
+    EXPECT_NEAR(measured("heat per area", heat_in(run) / b.width()), 150000.0, 300.0);
     EXPECT_NEAR(measured("share", mean(run, "m1") / (mean(run, "m1") + mean(run, "m2"))), 0.5,
                 0.01);
     const double *const e = run.compute_vector();
@@ -170,15 +153,13 @@ SERIAL_TEST(Brake, HeatsBothFaces)
     EXPECT_NEAR(run.evaluate("f_touch") / e[7], 1.0, 1e-12);
     EXPECT_NEAR(e[14] / e[17], 1.0, 1e-11);    // what points have got
   }
-  EXPECT_NEAR(error[2], 0.0, 0.03);
   EXPECT_LT(std::fabs(error[1]), 0.3 * std::fabs(error[0]));
 }
 
 // what the kinetic energy loses is heat, when the pressure comes slowly, so that nothing vibrates
-PARAMETER_TEST(Energy, LostIsHeat, const char *, Values("", "separate", "slip"))
+SERIAL_PARAMETER_TEST(Energy, LostIsHeat, const char *, Values("", "separate", "slip"))
 {
   LONG_AFTER(1);
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   Braked b = {2.0, 1e9};
   b.ramp = 0.03;
   const std::string kind = GetParam();
@@ -234,43 +215,35 @@ SERIAL_TEST(Share, IsThatOfEffusivities)
 // a base of two materials in layers of points has their effusivities by volume
 SERIAL_TEST(Share, OfMixedBodies)
 {
-  Braked b = {2.0};
-  const std::string scene = b.scene();
   // every second point of the base conducts 16 times as well
-  const std::string line =
-      scene.substr(scene.find("fix m2 base"),
-                   scene.find('\n', scene.find("fix m2 base")) - scene.find("fix m2 base"));
-  const std::string half =
-      "variable odd atom id%2==1\ngroup odd variable odd\ngroup right intersect base odd\n"
-      "group left subtract base odd\n";
-  const std::string left = replaced(line, "fix m2 base", "fix m2 left");
-  const std::string right =
-      replaced(replaced(line, "fix m2 base", "fix m3 right"), "50.0", "800.0");
-  Scene run(replaced(scene, line, half + left + "\n" + right));
+  Braked b = {2.0};
+  b.base = "variable odd atom id%2==1\ngroup odd variable odd\ngroup right intersect base odd\n"
+           "group left subtract base odd\n" +
+      replaced(b.base, "m2 base", "m2 left") +
+      replaced(replaced(b.base, "m2 base", "m3 right"), "50.0", "800.0");
+  Scene run(b.scene());
   run_until(run, b, 0.01);
   const double up = mean(run, "m1"), l = mean(run, "m2"), r = mean(run, "m3");
   EXPECT_NEAR(measured("share", up / (up + 0.5 * (l + r))), 1.0 / (1.0 + 2.5), 1e-3);
   EXPECT_NEAR(run.compute_vector()[14] / run.compute_vector()[17], 1.0, 1e-11);
 }
 
-namespace {
-
-/** A block that slides on another one, of which the lower one conducts like this; the normal is along the last axis. */
-std::string sliding(int dim, const std::string &below)
+/** A block slides on another one that conducts like this; the normal is along the last axis. */
+static std::string sliding(int dim, const std::string &below)
 {
-  const std::string flat = dim == 2 ? "INF INF" : "INF INF INF INF";
-  const std::string up = dim == 2 ? " 0 2 INF INF" : " 0 2",
-                    low = dim == 2 ? " -2 0 INF INF" : " -2 0";
-  return box(dim, "lj", dim == 2 ? "p f" : "p p f", dim == 2 ? "0 1 -2 3" : "0 1 0 1 -2 3", 2,
+  const std::string flat = dim == 2 ? "INF INF " : "INF INF INF INF ", up = dim == 2 ? "y" : "z";
+  return box(dim, "lj", dim == 2 ? "p f p" : "p p f", dim == 2 ? "0 1 -2 3 0 0" : "0 1 0 1 -2 3", 2,
              0.1) +
-      fields({{"upper", "block " + flat + up}, {"lower", "block " + flat + low}}, "0.25") +
+      fields({{"upper", "block " + flat + "0 2" + (dim == 2 ? " INF INF" : "")},
+              {"lower", "block " + flat + "-2 0" + (dim == 2 ? " INF INF" : "")}},
+             "0.25") +
       "fix m1 upper mpm/material density 1 neohookean 1e5 0.3 thermal conducting 1 0 1\n"
       "fix m2 lower mpm/material density 1 neohookean 1e5 0.3 thermal conducting 1 0 " +
       below +
-      "\nfix touch all mpm/contact F1 F2 law coulomb 0.3 heat yes\nfix heat all mpm/heat\n" +
-      (dim == 2 ? "fix floor all mpm/boundary ylo stick\nfix g all gravity 1 vector 0 -1 0\n"
-                : "fix floor all mpm/boundary zlo stick\nfix g all gravity 1 vector 0 0 -1\n") +
-      "velocity upper set 1 0 0\ntimestep 5e-4\nrun 60\n";
+      "\nfix touch all mpm/contact F1 F2 law coulomb 0.3 heat yes\nfix heat all mpm/heat\n"
+      "fix floor all mpm/boundary " +
+      up + "lo stick\nfix g all gravity 1 vector 0 " + (dim == 2 ? "-1 0" : "0 -1") +
+      "\nvelocity upper set 1 0 0\ntimestep 5e-4\nrun 60\n";
 }
 
 struct Share {
@@ -279,18 +252,15 @@ struct Share {
   double K;    // along the normal
 };
 
-}    // namespace
-
 // of an orthotropic body it is the conductivity along the normal that counts, wherever its axes are
-PARAMETER_TEST(ShareOrthotropic, IsThatAlongTheNormal, Share,
-               Values(Share{2, "16 orthotropic 4 1", 4.0},
-                      Share{2, "4 orthotropic 16 1 angle 90", 4.0},
-                      Share{2, "1 orthotropic 17 1 angle 45", 9.0},
-                      Share{3, "16 orthotropic 1 4", 4.0},
-                      Share{3, "1 orthotropic 17 3 axes 0 1 1 0 1 -1", 9.0},
-                      Share{3, "4 orthotropic 1 9 axes 0 0 1 1 0 0", 4.0}))
+SERIAL_PARAMETER_TEST(ShareOrthotropic, IsThatAlongTheNormal, Share,
+                      Values(Share{2, "16 orthotropic 4 1", 4.0},
+                             Share{2, "4 orthotropic 16 1 angle 90", 4.0},
+                             Share{2, "1 orthotropic 17 1 angle 45", 9.0},
+                             Share{3, "16 orthotropic 1 4", 4.0},
+                             Share{3, "1 orthotropic 17 3 axes 0 1 1 0 1 -1", 9.0},
+                             Share{3, "4 orthotropic 1 9 axes 0 0 1 1 0 0", 4.0}))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const Share &share = GetParam();
   Scene run(sliding(share.dim, share.below));
   const double up = mean(run, "m1"), low = mean(run, "m2");
@@ -298,7 +268,7 @@ PARAMETER_TEST(ShareOrthotropic, IsThatAlongTheNormal, Share,
   EXPECT_NEAR(measured("share", up / (up + low)), 1.0 / (1.0 + std::sqrt(share.K)), 1e-4);
 }
 
-// so with points of another material among them, by the mean of the square roots of their conductivities along the axes
+// so with points of another material among them, by the mean roots of conductivities
 TEST(ShareOrthotropic, AgreesOnRanks)
 {
   const std::string scene = replaced(
@@ -322,12 +292,11 @@ TEST(ShareOrthotropic, AgreesOnRanks)
   EXPECT_LT(share, 1.0 / 4.0);
 }
 
-// a wall is an insulator: all heat goes to the block, also from the surface of a region, at nodes and between them
-PARAMETER_TEST(Wall, IsInsulator, const char *,
-               Values("ylo separate", "ylo slip", "region below separate"))
+// a wall is an insulator: all heat goes to the block, also from a region at and between nodes
+SERIAL_PARAMETER_TEST(Wall, IsInsulator, const char *,
+                      Values("ylo separate", "ylo slip", "region below separate"))
 {
   LONG_AFTER(1);
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   Braked b = {4.0};
   b.wall = GetParam();
   Scene run(b.scene());
@@ -344,12 +313,12 @@ PARAMETER_TEST(Wall, IsInsulator, const char *,
   EXPECT_NEAR(some[17] / -some[6], 0.25, 1e-12);
 }
 
-// A block hits a wall at an angle: what it loses of its motion along the wall is heat, what nodes lose as they meet the wall
-// is none. Friction at its lower face also turns and shears the block, which takes 3.6 to 3.8 % of that with 4, 8, and 16 cells in its height
-// and steps of half the length: no error that would become less
-PARAMETER_TEST(Impact, OfThePushIsNoHeat, const char *, Values("ylo", "region below"))
+// A block hits a wall at an angle: what it loses of its motion along the wall is heat, what nodes
+// lose as they meet the wall is none. Friction at its lower face also turns and shears the block,
+// which takes 3.6 to 3.8 % of that with 4, 8, and 16 cells in its height and steps of half the
+// length: no error that would become less
+SERIAL_PARAMETER_TEST(Impact, OfThePushIsNoHeat, const char *, Values("ylo", "region below"))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   Scene run(plane("lj", "p f", "0 20 -1 8", 1, 0.2) +
             body("block 6 10 0.3 2.3 -0.5 0.5",
                  "density 1 neohookean 2000 0.3 thermal conducting 1 0 0.1", "0.5") +
@@ -371,11 +340,10 @@ PARAMETER_TEST(Impact, OfThePushIsNoHeat, const char *, Values("ylo", "region be
 }
 
 // nothing slides: not a bit of heat
-PARAMETER_TEST(Sticks, MakesNoHeat, const char *,
-               Values("", "ylo separate", "region below separate"))
+SERIAL_PARAMETER_TEST(Sticks, MakesNoHeat, const char *,
+                      Values("", "ylo separate", "region below separate"))
 {
   LONG_AFTER(1);
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   Braked b = {2.0};
   b.wall = GetParam();
   b.ramp = 0.01;
@@ -383,14 +351,12 @@ PARAMETER_TEST(Sticks, MakesNoHeat, const char *,
            "vector 1 0 0\n";
   Scene run(b.scene());
   run_until(run, b, 0.02);
-  EXPECT_EQ(run.fix("heat")->compute_scalar(), 0.0);
+  EXPECT_EQ(heat_in(run), 0.0);
   EXPECT_GT(run.fix("touch")->compute_scalar() + run.compute_vector()[5], 0.0);
   EXPECT_EQ(mean(run, "m1"), 0.0);
 }
 
-namespace {
-
-/** Two disks, one of two materials, that slide along each other and the floor, across ranks and a periodic face. */
+/** Two disks, one of two materials, slide along each other and the floor. */
 const std::string disks = plane("lj", "p f", "0 16 0 8", 3, 0.4) +
     fields({{"one", "cylinder z 3.1 2.5 2.5 INF INF"}, {"two", "cylinder z 12.9 3.3 2.5 INF INF"}},
            "0.5") +
@@ -410,28 +376,16 @@ velocity two set 1.0 -0.4 0
 timestep 0.01
 )";
 
-double heat(Scene &run)
+static double heat(Scene &run)
 {
-  double sum = 0.0;
-  for (const char *id : {"m1", "m2", "m3"}) {
-    auto *fix = run.material(id);
-    const int column = fix->find_history("temperature");
-    for (int i = 0; i < run.n(); i++)
-      if (run.lmp->atom->mask[i] & fix->groupbit)
-        sum += run.mass()[i] * fix->material->conduction(fix->history[i]).capacity *
-            fix->history[i][column];
-  }
-  return over_ranks(sum);
+  return heat_of(run, "m1") + heat_of(run, "m2") + heat_of(run, "m3");
 }
-
-}    // namespace
 
 PARAMETER_TEST(Disks, AgreeOnRanksAndCloseTheLedger, const char *,
                Values("", "scheme musl", "transfer flip 0.99"))
 {
   LONG_AFTER(1);
-  std::string scene = replaced(disks, "mpm 0.5\n", strprintf("mpm 0.5 %s\n", GetParam()));
-  scene = replaced(scene, "mpm 0.5\n", strprintf("mpm 0.5 %s\n", GetParam()));
+  const std::string scene = replaced(disks, "mpm 0.5\n", strprintf("mpm 0.5 %s\n", GetParam()));
   Scene start(disks + "run 0\n");
   const double before = heat(start);
   OnRanks run(scene + "compute e all mpm/energy\n", "run 300\n");
@@ -448,17 +402,11 @@ PARAMETER_TEST(Disks, AgreeOnRanksAndCloseTheLedger, const char *,
 
 TEST(Disks, ContinueFromARestartFile)
 {
-  std::string fixes = "neighbor 0.4 bin\n";
-  for (std::size_t at = 0, end; at < disks.size(); at = end + 1) {
-    end = disks.find('\n', at);
-    if (disks.compare(at, 4, "fix ") == 0) fixes += disks.substr(at, end - at) + "\n";
-  }
-  Continued run(disks, 200, fixes + "timestep 0.01\n", 60);
+  Continued run(disks, 200, lines_again(disks), 60);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
-  EXPECT_EQ(run.whole.fix("heat")->compute_scalar(), run.again.fix("heat")->compute_scalar());
+  EXPECT_EQ(heat_in(run.whole), heat_in(run.again));
   Scene never(disks + "run 260\n");    // written
-  EXPECT_NEAR(run.again.fix("heat")->compute_scalar() / never.fix("heat")->compute_scalar(), 1.0,
-              1e-9);
+  EXPECT_NEAR(heat_in(run.again) / heat_in(never), 1.0, 1e-9);
   EXPECT_EQ(heat(run.whole), heat(run.again));
 }
 
@@ -500,8 +448,8 @@ SERIAL_TEST(RigidBody, HeatsTheMaterial)
   const double kinetic = run.fix("tool")->compute_scalar();
   const double z = run.fix_vector("tool", 24)[2];
   run.commands("run 300\n");
-  // what body and block lose: the motion of the body, its weight, and what the block has got of it; but for what nodes lose
-  // when the body meets them, which the ledger has under transfers
+  // what body and block lose: the motion of the body, its weight, and what the block has got of it;
+  // but for what nodes lose when the body meets them, which the ledger has under transfers
   const double fall = 4.0 * mesh.volume * (z - run.fix_vector("tool", 24)[2]);
   const double *const e = run.compute_vector();
   const double lost =

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -10,8 +10,6 @@
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 constexpr double GRAIN_CAPACITY = 500.0;
 
@@ -29,7 +27,8 @@ fix prop all property/atom temperature heatflow ghost yes
 )";
 
 /** What a run needs, also after a restart. */
-std::string fixes(const std::string &contact, const std::string &material, const std::string &hot)
+static std::string fixes(const std::string &contact, const std::string &material,
+                         const std::string &hot)
 {
   return "fix grid all mpm 0.008\nfix m block mpm/material density 1000 neohookean 1.0e5 0.3 " +
       material + "\npair_style granular\npair_coeff * * " + contact +
@@ -38,7 +37,7 @@ std::string fixes(const std::string &contact, const std::string &material, const
 }
 
 /** Heat of the grains, above the temperature 0. */
-double heat_of_grains(Scene &run)
+static double heat_of_grains(Scene &run)
 {
   auto *const atom = run.lmp->atom;
   double sum = 0.0;
@@ -47,7 +46,7 @@ double heat_of_grains(Scene &run)
   return over_ranks(sum);
 }
 
-double heat_of_points(Scene &run, double &capacity)
+static double heat_of_points(Scene &run, double &capacity)
 {
   auto *fix = run.material("m");
   const int column = fix->find_history("temperature");
@@ -62,8 +61,8 @@ double heat_of_points(Scene &run, double &capacity)
   return over_ranks(sum);
 }
 
-/** What points have not got yet: the heat that came to them in the last step, which goes to their nodes in the next one. */
-double waiting_heat(Scene &run)
+/** Heat that came to points in the last step, and goes to their nodes in the next one. */
+static double waiting_heat(Scene &run)
 {
   auto *const atom = run.lmp->atom;
   double sum = 0.0;
@@ -73,7 +72,8 @@ double waiting_heat(Scene &run)
 }
 
 /** Four hot grains fall on a block, across all ranks. */
-std::string falling(const std::string &newton = "on", const std::string &step = "timestep 1e-4\n")
+static std::string falling(const std::string &newton = "on",
+                           const std::string &step = "timestep 1e-4\n")
 {
   return replaced(head, "NEWTON", newton) + R"(
 fix grid all mpm 0.008
@@ -100,13 +100,9 @@ compute e all mpm/energy
 )" + step;
 }
 
-}    // namespace
-
-// A grain and a block that conducts well are two lumps: their difference decays like exp(-hA (1/C1 + 1/C2) t), and
-// the sum of heat stays
-PARAMETER_TEST(TwoLumps, Exponential, const char *, Values("on", "off"))
+// A grain and a block that conducts well are two lumps: exp(-hA (1/C1 + 1/C2) t)
+SERIAL_PARAMETER_TEST(TwoLumps, Exponential, const char *, Values("on", "off"))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   {
     Scene run(replaced(head, "NEWTON", GetParam()) + R"(
 fix grid all mpm 0.008
@@ -149,7 +145,7 @@ set group grains temperature 800
   }
 }
 
-// what grains lose, points get, in steps of changing length, with Newton's law between ranks and without
+// what grains lose, points get, in steps of changing length, with Newton's third law and without
 PARAMETER_TEST(Falling, KeepsHeat, const char *, Values("on", "off"))
 {
   // mpm/dt changes the step at its start, dt/reset at its end, here before heat is taken

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -7,123 +7,131 @@
 
 // Fix mpm/heat contact: heat between bodies that touch.
 
-#include "heat/heat_exact.h"
+#include "heat/heat_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
 constexpr int CONTACT = 9;    // place in the vector of fix mpm/heat
 
-/** Two bars of length 1 along x, periodic along y, of the conductivities ka and kb, with capacity 1, with n cells each;
- *  their interface is at x = 1 + gap/2, and shift node spacings from a node. */
+/** Two bodies of types 1 and 2 in fields of their own, capacity 1. a, b: regions; Ta, ka:
+ *  temperatures, conductivities; moved: commands before the fixes; heat: after "conductance". */
+struct Two {
+  std::string a, b, grid, heat;
+  double Ta = 1.0, Tb = 0.0;
+  std::string ka = "1.0", kb = "1.0", moved = "";
+
+  std::string text(double spacing) const
+  {
+    return "region a block " + a + " INF INF\nregion b block " + b + " INF INF\n" +
+        strprintf("create_points 1 region a spacing %.17g\n", spacing) +
+        strprintf("create_points 2 region b spacing %.17g\n", spacing) +
+        "group a type 1\ngroup b type 2\n" + moved + "fix ga a mpm " + grid + "\nfix gb b mpm " +
+        grid + "\n" + conductor(ka, Ta, "ma a") + conductor(kb, Tb, "mb b") +
+        "fix touch all mpm/contact ga gb\nfix heat all mpm/heat contact ga gb conductance " + heat +
+        "\n";
+  }
+};
+
+/** Two bars of length 1 along x, periodic along y, of the conductivities 1 and 4, with n cells
+ *  each; their interface is at x = 1 + gap/2, and shift node spacings from a node. */
 struct Bars {
   int n = 20;
   double shift = 0.0;
-  double ka = 1.0, kb = 4.0;
   std::string heat;
-  double Ta = 0.0, Tb = 0.0;
+  double Ta = 0.0;
   std::string velocity = "";
-  double gap = 0.0;         // in cells
-  double length_a = 1.0;    // both bars end at faces of the box
+  double gap = 0.0;    // in cells; both bars end at faces of the box
   std::string grid = "";
 
   std::string text() const
   {
     const double h = 1.0 / n;
-    const auto material = [](const char *id, double k, double T) {
-      return strprintf("fix m%s %s mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 "
-                       "%.17g %.17g\n",
-                       id, id, T, k);
-    };
     const bool flies = !velocity.empty();
     return plane("lj", flies ? "p p" : "f p",
                  strprintf("%.17g %.17g 0 %.17g", flies ? -2.0 : 0.0, (flies ? 4.0 : 2.0) + gap * h,
                            4 * h),
                  2, 0.1 * h) +
-        strprintf("region a block 0 %.17g INF INF INF INF\n", length_a) +
-        strprintf("region b block %.17g %.17g INF INF INF INF\n", length_a + gap * h,
-                  2.0 + gap * h) +
-        strprintf("create_points 1 region a spacing %.17g\n", 0.5 * h) +
-        strprintf("create_points 2 region b spacing %.17g\n", 0.5 * h) +
-        "group a type 1\ngroup b type 2\n" +
-        strprintf("fix ga a mpm %.17g origin %.17g 0 %s\n", h, length_a - shift * h, grid.c_str()) +
-        strprintf("fix gb b mpm %.17g origin %.17g 0 %s\n", h, length_a - shift * h, grid.c_str()) +
-        material("a", ka, Ta) + material("b", kb, Tb) + "fix touch all mpm/contact ga gb\n" +
-        "fix heat all mpm/heat contact ga gb conductance " + heat + "\n" + velocity;
+        Two{"0 1 INF INF",
+            strprintf("%.17g %.17g INF INF", 1.0 + gap * h, 2.0 + gap * h),
+            strprintf("%.17g origin %.17g 0 ", h, 1.0 - shift * h) + grid,
+            heat,
+            Ta,
+            0.0,
+            "1.0",
+            "4.0"}
+            .text(0.5 * h) +
+        velocity;
   }
 };
 
-/** Temperature at the interface, of the points of one body, from the two points next to it; side: of the body. */
-double face(Scene &run, const std::string &id, double x, int side, double h)
+/** Two halves of a square around the origin, with n cells along its sides, that is turned. */
+static std::string halves(int n, double offset, int degrees)
 {
-  Warm warm(run, id);
-  double sum[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
-  for (int i = 0; i < run.n(); i++)
-    for (int k = 0; k < 2; k++)
-      if (warm.has(i) && std::fabs(run.x()[i][0] - x - side * (0.25 + 0.5 * k) * h) < 0.1 * h) {
-        sum[k] += warm.T(i);
-        count[k]++;
-      }
-  const auto all = over_ranks({sum[0], count[0], sum[1], count[1]});
-  return 1.5 * all[0] / all[1] - 0.5 * all[2] / all[3];
+  const double h = 1.0 / n;
+  return plane("lj", "f f", "-1 1 -1 1", 2, 0.1 * h) +
+      Two{"-0.5 0 -0.5 0.5",
+          "0 0.5 -0.5 0.5",
+          strprintf("%.17g origin %.17g 0", h, offset * h),
+          "1.0",
+          1.0,
+          0.0,
+          "1.0",
+          "1.0",
+          strprintf("displace_atoms all rotate 0 0 0 0 0 1 %d\n", degrees)}
+          .text(0.5 * h);
 }
 
-double total_heat(Scene &run)
+/** Temperature at the interface at x = 1 of the points of one of the bars. */
+static double face(Scene &run, const std::string &id, double h)
+{
+  return measured("face of " + id, Warm(run, id).at_face(1.0, id == "ma" ? -1 : 1, h));
+}
+
+static double total_heat(Scene &run)
 {
   return Warm(run, "ma").heat() + Warm(run, "mb").heat();
 }
-
-}    // namespace
 
 // bars of conductivity 1 and 4 between 1 and 0, conductance 2: q = 4/7, faces 3/7 and 1/7
 SERIAL_TEST(Steady, FluxAndFaces)
 {
   for (const double shift : {0.0, 0.25, 0.5})
     for (const int n : {20, 40}) {
-      Bars bars;
-      bars.n = n;
-      bars.shift = shift;
-      bars.heat = "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64";
-      Scene run(bars.text());
-      run.commands("timestep 0.02\nrun 200\n");
+      Scene run(Bars{n, shift, "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64"}.text() +
+                "timestep 0.02\nrun 200\n");
       const double *const power = run.fix_vector("heat", 10);
       const double area = 4.0 / n;
       EXPECT_NEAR(measured(strprintf("%g %d q", shift, n), power[CONTACT] / area), 4.0 / 7.0, 1e-5);
       EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-6);
       EXPECT_NEAR(power[1] / power[CONTACT], -1.0, 1e-6);
-      EXPECT_NEAR(measured("face", face(run, "ma", 1.0, -1, 1.0 / n)), 3.0 / 7.0, 1e-5);
-      EXPECT_NEAR(measured("face", face(run, "mb", 1.0, 1, 1.0 / n)), 1.0 / 7.0, 1e-5);
+      EXPECT_NEAR(face(run, "ma", 1.0 / n), 3.0 / 7.0, 1e-5);
+      EXPECT_NEAR(face(run, "mb", 1.0 / n), 1.0 / 7.0, 1e-5);
     }
 }
 
-// the same with other shape functions, which for linear ones is exact only where points are in the middle of halves of cells
-PARAMETER_TEST(SteadyWithShapes, FluxAndFaces, const char *,
-               Values("shape linear", "shape cubic", "shape gimp", "shape cpdi"))
+// the same with other shape functions; linear: exact for points in the middle of halves of cells
+SERIAL_PARAMETER_TEST(SteadyWithShapes, FluxAndFaces, const char *,
+                      Values("shape linear", "shape cubic", "shape gimp", "shape cpdi"))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const std::string shape = GetParam();
   for (const double shift : {0.0, shape == "shape linear" ? 0.4 : 0.25, 0.5}) {
-    Bars bars;
-    bars.n = 20;
-    bars.shift = shift;
-    bars.heat = "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64";
-    bars.grid = shape;
-    Scene run(bars.text());
+    Scene run(Bars{20, shift, "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64", 0.0, "", 0.0,
+                   shape}
+                  .text());
     run_to(run, 5.0, 2.0 / (20 * 20));
     const double *const power = run.fix_vector("heat", 10);
     EXPECT_NEAR(measured(strprintf("%g q", shift), power[CONTACT] * 5.0) / (4.0 / 7.0), 1.0, 0.01);
     EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-6);
-    EXPECT_NEAR(measured("face", face(run, "ma", 1.0, -1, 0.05)) / (3.0 / 7.0), 1.0, 0.01);
-    EXPECT_NEAR(measured("face", face(run, "mb", 1.0, 1, 0.05)) / (1.0 / 7.0), 1.0, 0.01);
+    EXPECT_NEAR(face(run, "ma", 0.05) / (3.0 / 7.0), 1.0, 0.01);
+    EXPECT_NEAR(face(run, "mb", 0.05) / (1.0 / 7.0), 1.0, 0.01);
   }
 }
 
-// two tubes around an axis of symmetry, one in the other, of conductivity 1 and 4 from r = 1 to 1.5 to 2, between 1 and 0: the power is 2 pi over
-// the sum of ln(1.5), 1/(1.5 H), and ln(4/3)/4; also through an interface normal to the axis
-PARAMETER_TEST(Axis, HeatThroughTwoTubes, const char *, Values("", "shape cubic", "shape linear"))
+// two tubes around an axis of symmetry, one in the other, of conductivity 1 and 4 from r = 1 to 1.5
+// to 2, between 1 and 0: the power is 2 pi over the sum of ln(1.5), 1/(1.5 H), and ln(4/3)/4
+SERIAL_PARAMETER_TEST(Axis, HeatThroughTwoTubes, const char *,
+                      Values("", "shape cubic", "shape linear"))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   constexpr double h = 0.05;
   for (const double offset : {0.0, GetParam() == std::string("shape linear") ? 0.5 : 0.4})
     for (const double H : {2.0, 1e9}) {
@@ -136,10 +144,8 @@ PARAMETER_TEST(Axis, HeatThroughTwoTubes, const char *, Values("", "shape cubic"
                 grid + "fix gb b mpm " + grid +
                 strprintf("create_points 1 region a spacing %g\n", 0.5 * h) +
                 strprintf("create_points 2 region b spacing %g\n", 0.5 * h) +
-                "group a type 1\ngroup b type 2\n"
-                "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.5 1.0\n"
-                "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.5 4.0\n"
-                "fix touch all mpm/contact ga gb\n" +
+                "group a type 1\ngroup b type 2\n" + conductor("1.0", 0.5, "ma a") +
+                conductor("4.0", 0.5, "mb b") + "fix touch all mpm/contact ga gb\n" +
                 strprintf("fix heat all mpm/heat contact ga gb conductance %g xlo temperature 1 "
                           "xhi temperature 0 stages 64\n",
                           H));
@@ -153,25 +159,21 @@ PARAMETER_TEST(Axis, HeatThroughTwoTubes, const char *, Values("", "shape cubic"
     }
 }
 
-// half-spaces of effusivity 1 and 2, at 1 and 0, conductance 2, at t = 0.1: 0.628014, 0.185993, flux 0.884043. Lengths
-// here are in a unit in which that is t = 0.01, and h_c = 2 sqrt(10)
+// half-spaces of effusivity 1 and 2, at 1 and 0, conductance 2, at t = 0.1: 0.628014, 0.185993,
+// flux 0.884043. Lengths here are in a unit in which that is t = 0.01, and h_c = 2 sqrt(10)
 SERIAL_TEST(HalfSpaces, Faces)
 {
   for (const double shift : {0.0, 0.25, 0.5})
     for (const int n : {40, 80}) {
-      Bars bars;
-      bars.n = n;
-      bars.shift = shift;
-      bars.Ta = 1.0;
-      bars.heat = strprintf("%.17g", 2.0 * std::sqrt(10.0));
-      Scene run(bars.text());
+      Scene run(Bars{n, shift, strprintf("%.17g", 2.0 * std::sqrt(10.0)), 1.0}.text());
       const double before = total_heat(run);
       run_to(run, 0.01, 0.02 / (n * n));
-      EXPECT_NEAR(measured(strprintf("%g %d face", shift, n), face(run, "ma", 1.0, -1, 1.0 / n)),
-                  0.628014, 0.00628);
-      EXPECT_NEAR(measured("face", face(run, "mb", 1.0, 1, 1.0 / n)), 0.185993, 0.00186);
+      EXPECT_NEAR(face(run, "ma", 1.0 / n), 0.628014, 0.00628);
+      EXPECT_NEAR(face(run, "mb", 1.0 / n), 0.185993, 0.00186);
       const double *const power = run.fix_vector("heat", 10);
-      EXPECT_NEAR(measured("flux", power[CONTACT] * n / 4.0 / std::sqrt(10.0)), 0.884043, 0.00884);
+      EXPECT_NEAR(
+          measured(strprintf("%g %d flux", shift, n), power[CONTACT] * n / 4.0 / std::sqrt(10.0)),
+          0.884043, 0.00884);
       EXPECT_NEAR(total_heat(run) / before, 1.0, 1e-13);
     }
 }
@@ -182,40 +184,27 @@ SERIAL_TEST(Perfect, IsTheLimit)
   for (const double shift : {0.0, 0.25, 0.5}) {
     double error[2];
     for (const int n : {20, 40}) {
-      Bars bars;
-      bars.n = n;
-      bars.shift = shift;
-      bars.Ta = 1.0;
-      bars.heat = "1e12";
-      Scene run(bars.text());
+      Scene run(Bars{n, shift, "1e12", 1.0}.text());
       const double before = total_heat(run);
       run_to(run, 0.02, 0.04 / (n * n));
-      const double A =
-          measured(strprintf("%g %d face", shift, n), face(run, "ma", 1.0, -1, 1.0 / n));
-      const double B = measured("face", face(run, "mb", 1.0, 1, 1.0 / n));
-      error[n == 40] = std::max(std::fabs(A - 1.0 / 3.0), std::fabs(B - 1.0 / 3.0));
+      error[n == 40] = std::max(std::fabs(face(run, "ma", 1.0 / n) - 1.0 / 3.0),
+                                std::fabs(face(run, "mb", 1.0 / n) - 1.0 / 3.0));
       EXPECT_NEAR(total_heat(run) / before, 1.0, 1e-13);
     }
-    EXPECT_LT(error[1], 0.001);
-    EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 0.9);
+    EXPECT_LT(error[1], 0.001) << shift;
+    EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 0.9) << shift;
   }
 }
 
-// two bodies of capacities 1 and 3, whose temperatures are even, h A = 0.5: the difference at t = 1 is 0.513417
+// two bodies of capacities 1 and 3, h A = 0.5: the difference at t = 1 is 0.513417
 SERIAL_TEST(Lumped, Decays)
 {
-  // 4 cells wide, 1 and 3 long with capacity 1 per volume, conductivity 1e4; area 0.4
   for (const double H : {0.5, 0.0}) {
-    Scene run(plane("lj", "f p", "0 4 0 1", 2, 0.01) +
-              "region a block 0 1 INF INF INF INF\nregion b block 1 4 INF INF INF INF\n"
-              "create_points 1 region a spacing 0.1\ncreate_points 2 region b spacing 0.1\n"
-              "group a type 1\ngroup b type 2\nfix ga a mpm 0.2\nfix gb b mpm 0.2\n"
-              "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e3\n"
-              "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1e3\n"
-              "fix touch all mpm/contact ga gb\nvariable H equal " +
-              strprintf("%g", H) +
-              "\nfix heat all mpm/heat contact ga gb conductance v_H stages 201\n"
-              "timestep 0.005\nrun 200\n");
+    Scene run(
+        plane("lj", "f p", "0 4 0 1", 2, 0.01) + strprintf("variable H equal %g\n", H) +
+        Two{"0 1 INF INF", "1 4 INF INF", "0.2", "v_H stages 201", 1.0, 0.0, "1e3", "1e3"}.text(
+            0.1) +
+        "timestep 0.005\nrun 200\n");
     const double difference = Warm(run, "ma").heat() / 1.0 - Warm(run, "mb").heat() / 3.0;
     EXPECT_NEAR(measured("difference", difference), H > 0.0 ? 0.513417 : 1.0, 0.00513);
     EXPECT_NEAR(total_heat(run), 1.0, 1e-13);
@@ -226,11 +215,7 @@ SERIAL_TEST(Lumped, Decays)
 SERIAL_TEST(Gap, Insulates)
 {
   for (const double gap : {0.0, 0.5, 1.5}) {
-    Bars bars;
-    bars.gap = gap;
-    bars.Ta = 1.0;
-    bars.heat = "5.0";
-    Scene run(bars.text() + "timestep 1e-4\n");
+    Scene run(Bars{20, 0.0, "5.0", 1.0, "", gap}.text() + "timestep 1e-4\n");
     double A = Warm(run, "ma").heat(), B = Warm(run, "mb").heat();
     const double all = A + B;
     for (int k = 0; k < 5; k++) {
@@ -246,7 +231,7 @@ SERIAL_TEST(Gap, Insulates)
       A = a;
       B = b;
     }
-    EXPECT_EQ(run.fix("heat")->compute_scalar(), 0.0);
+    EXPECT_EQ(heat_in(run), 0.0);
   }
 }
 
@@ -255,39 +240,29 @@ SERIAL_TEST(Moving, ExchangesTheSame)
 {
   double T[2];
   for (const bool moves : {false, true}) {
-    Bars bars;
-    bars.n = 40;
-    bars.Ta = 1.0;
-    bars.heat = "6.0";
-    bars.velocity = strprintf("velocity all set %g 0 0\n", moves ? 37.3 : 0.0);
-    Scene run(bars.text() + "timestep 2e-5\nrun 500\n");
+    const std::string velocity = strprintf("velocity all set %g 0 0\n", moves ? 37.3 : 0.0);
+    Scene run(Bars{40, 0.0, "6.0", 1.0, velocity}.text() + "timestep 2e-5\nrun 500\n");
     T[moves] = measured("heat of the first bar", Warm(run, "ma").heat() / (4.0 / 40));
   }
   EXPECT_NEAR((1.0 - T[1]) / (1.0 - T[0]), 1.0, 0.01);
 }
 
-namespace {
-
-/** Two squares of 1 x 1 that touch, with 10 cells along their sides, conductivities of 1e-2 and 2e-2, room around them, and regions: low below the first one,
- *  right where it is said. */
-std::string two_squares(double offset, const std::string &right, const std::string &heat)
+/** Two squares of 1 x 1 that touch, with 10 cells along their sides, conductivities of 1e-2 and
+ *  2e-2, room around them, and regions: low below the first one, right where it is said. */
+static std::string two_squares(double offset, const std::string &right, const std::string &heat)
 {
-  const std::string grid = strprintf(" mpm 0.1 dtcheck no origin %g %g\n", offset, offset);
   return plane("lj", "f f", "-0.5 2.5 -0.5 1.5", 2, 0.02) +
-      "region a block 0 1 0 1 INF INF\nregion b block 1 2 0 1 INF INF\n"
-      "region low block -1 1 -1 0 INF INF\nregion right block " +
-      right +
-      " INF INF\n"
-      "create_points 1 region a spacing 0.05\ncreate_points 2 region b spacing 0.05\n"
-      "group a type 1\ngroup b type 2\nfix ga a" +
-      grid + "fix gb b" + grid +
-      "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1e-2\n"
-      "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 2e-2\n"
-      "fix touch all mpm/contact ga gb\nfix heat all mpm/heat " +
-      heat + " stages 9 transfer relax 0\n";
+      "region low block -1 1 -1 0 INF INF\nregion right block " + right + " INF INF\n" +
+      Two{"0 1 0 1",
+          "1 2 0 1",
+          strprintf("0.1 dtcheck no origin %g %g", offset, offset),
+          heat + " stages 9 transfer relax 0",
+          1.0,
+          1.0,
+          "1e-2",
+          "2e-2"}
+          .text(0.05);
 }
-
-}    // namespace
 
 // a contact that ends at regions of different temperatures: powers do not depend on the time step
 SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
@@ -295,10 +270,10 @@ SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
   for (const double offset : {0.0, 0.03}) {
     double power[2][3];
     for (const bool is_long : {false, true}) {
-      Scene run(replaced(two_squares(offset, "2 3 -1 2",
-                                     "region low convection 1e3 0.0 region right temperature 2.0 "
-                                     "contact ga gb conductance 1e3 source v_q"),
-                         "fix heat", "variable q atom 1e-2*gmask(a)\nfix heat"));
+      Scene run(two_squares(offset, "2 3 -1 2",
+                            "1e3 region low convection 1e3 0.0 region right temperature 2.0 "
+                            "source v_q") +
+                "variable q atom 1e-2*gmask(a)\n");
       run_to(run, 300.0, is_long ? 1.0 : 0.05);
       const double *const all = run.fix_vector("heat", 12);
       for (int k = 0; k < 3; k++) power[is_long][k] = measured("power", all[9 + k]);
@@ -307,20 +282,19 @@ SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
   }
 }
 
-// two bodies at different temperatures below, and a contact that ends there: what it lets through at the edge is what conduction
-// does, whatever the conductance and the time step are
+// two bodies at different temperatures below, and a contact that ends there: what it lets through
+// at the edge is what conduction does, whatever the conductance and the time step are
 SERIAL_TEST(Edge, BetweenTwoTemperatures)
 {
   for (const double offset : {0.0, 0.03})
-    for (const char *conductance : {"1", "1e8"}) {
+    for (const std::string conductance : {"1", "1e8"}) {
       double power[2];
       for (const bool is_long : {false, true}) {
-        Scene run(two_squares(offset, "1 3 -1 0",
-                              std::string("region low temperature 0.0 region right temperature 2.0 "
-                                          "contact ga gb conductance ") +
-                                  conductance));
+        Scene run(
+            two_squares(offset, "1 3 -1 0",
+                        conductance + " region low temperature 0.0 region right temperature 2.0"));
         run_to(run, 200.0, is_long ? 1.0 : 0.05);
-        power[is_long] = measured("power", run.fix_vector("heat", 12)[11]);
+        power[is_long] = measured("power", run.fix_vector("heat", 12)[CONTACT]);
       }
       EXPECT_NEAR(power[1] / power[0], 1.0, 1e-3) << offset << " " << conductance;
     }
@@ -329,45 +303,21 @@ SERIAL_TEST(Edge, BetweenTwoTemperatures)
 // two halves of a square that is turned, with any offset: each is a slab with Bi = 1 at t = 0.125
 SERIAL_TEST(Turned, SlabsCool)
 {
-  for (const int n : {20, 40}) {
-    const double h = 1.0 / n;
+  for (const int n : {20, 40})
     for (const double offset : {0.0, 0.3}) {
-      Scene run(plane("lj", "f f", "-1 1 -1 1", 2, 0.1 * h) +
-                "region a block -0.5 0 -0.5 0.5 INF INF\nregion b block 0 0.5 -0.5 0.5 INF INF\n" +
-                strprintf("create_points 1 region a spacing %.17g\n", 0.5 * h) +
-                strprintf("create_points 2 region b spacing %.17g\n", 0.5 * h) +
-                "group a type 1\ngroup b type 2\ndisplace_atoms all rotate 0 0 0 0 0 1 30\n" +
-                strprintf("fix ga a mpm %.17g origin %.17g 0\nfix gb b mpm %.17g origin %.17g 0\n",
-                          h, offset * h, h, offset * h) +
-                "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1.0\n"
-                "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
-                "fix touch all mpm/contact ga gb\n"
-                "fix heat all mpm/heat contact ga gb conductance 1.0\n");
-      run_to(run, 0.125, 0.2 * h * h);
+      Scene run(halves(n, offset, 30));
+      run_to(run, 0.125, 0.2 / (n * n));
       EXPECT_NEAR(measured(strprintf("%d %g heat", n, offset), Warm(run, "ma").heat()),
                   0.5 * (0.5 + 0.5 * slab_mean(1.0, 0.5)), 0.0035);
       EXPECT_NEAR(total_heat(run), 0.5, 1e-13);
     }
-  }
 }
 
 // the whole area of an interface that is inclined, also at its ends: power in the first step
 SERIAL_TEST(Turned, HasItsArea)
 {
-  const int n = 20;
-  const double h = 1.0 / n;
   for (const double offset : {0.0, 0.3, 0.5}) {
-    Scene run(plane("lj", "f f", "-1 1 -1 1", 2, 0.1 * h) +
-              "region a block -0.5 0 -0.5 0.5 INF INF\nregion b block 0 0.5 -0.5 0.5 INF INF\n" +
-              strprintf("create_points 1 region a spacing %.17g\n", 0.5 * h) +
-              strprintf("create_points 2 region b spacing %.17g\n", 0.5 * h) +
-              "group a type 1\ngroup b type 2\ndisplace_atoms all rotate 0 0 0 0 0 1 15\n" +
-              strprintf("fix ga a mpm %.17g origin %.17g 0\nfix gb b mpm %.17g origin %.17g 0\n", h,
-                        offset * h, h, offset * h) +
-              "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1.0\n"
-              "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
-              "fix touch all mpm/contact ga gb\n"
-              "fix heat all mpm/heat contact ga gb conductance 1.0\ntimestep 1e-8\nrun 1\n");
+    Scene run(halves(20, offset, 15) + "timestep 1e-8\nrun 1\n");
     EXPECT_NEAR(measured(strprintf("offset %g, area", offset), run.fix_vector("heat", 10)[CONTACT]),
                 1.0, 0.01);
   }
@@ -378,42 +328,30 @@ TEST(Thin, IsSaid)
 {
   for (const double offset : {0.0, 0.25, 0.6})
     for (const double cells : {1.0, 2.0, 3.0, 4.0}) {
-      const std::string scene = plane("lj", "f p", "-12 12 0 8", 2, 0.4) +
-          "region a block -12 0 INF INF INF INF\n" +
-          strprintf("region b block 0 %g INF INF INF INF\n", cells) +
-          "create_points 1 region a spacing 0.5\ncreate_points 2 region b spacing 0.5\n"
-          "group a type 1\ngroup b type 2\n" +
-          strprintf("fix ga a mpm 1.0 origin %g 0\nfix gb b mpm 1.0 origin %g 0\n", offset,
-                    offset) +
-          "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 1.0 1.0\n"
-          "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0.0 1.0\n"
-          "fix touch all mpm/contact ga gb\n"
-          "fix heat all mpm/heat contact ga gb conductance 1.0\ntimestep 0.01\nrun 60\nrun 60\n";
-      EXPECT_EQ(said_thin(scene), cells < 2.5) << offset << " " << cells;
+      const Two bodies = {"-12 0 INF INF", strprintf("0 %g INF INF", cells),
+                          strprintf("1.0 origin %g 0", offset), "1.0"};
+      EXPECT_EQ(said_thin(plane("lj", "f p", "-12 12 0 8", 2, 0.4) + bodies.text(0.5) +
+                          "timestep 0.01\nrun 60\nrun 60\n"),
+                cells < 2.5)
+          << offset << " " << cells;
     }
 }
 
 TEST(Ranks, Agree)
 {
-  Bars bars;
-  bars.n = 10;
-  bars.Ta = 1.0;
-  bars.heat = "50.0 xlo convection 3.0 2.0";
-  const std::string scene = replaced(bars.text(), "fix heat", "velocity a set 0.3 0.2 0\nfix heat");
-  OnRanks run(scene + "timestep 0.002\n", "run 60\n");
+  OnRanks run(Bars{10, 0.0, "50.0 xlo convection 3.0 2.0", 1.0}.text() +
+                  "velocity a set 0.3 0.2 0\ntimestep 0.002\n",
+              "run 60\n");
   EXPECT_LT(run.difference(), 1e-12);
   const double one = Warm(run.serial, "mb").heat(), all = Warm(run.parallel, "mb").heat();
   EXPECT_GT(one, 0.05);
-  EXPECT_NEAR(nranks() * all / one, 1.0, 1e-12);    // one: of each rank
+  EXPECT_NEAR(all / one, 1.0, 1e-12);
 }
 
 SERIAL_TEST(BadInput, IsRefused)
 {
-  Bars bars;
-  bars.n = 4;
-  bars.heat = "1.0";
-  const std::string scene = replaced(bars.text() + "timestep 0.001\n",
-                                     "fix heat all mpm/heat contact ga gb conductance 1.0 \n", "");
+  const std::string scene = replaced(Bars{4, 0.0, "1.0"}.text() + "timestep 0.001\n",
+                                     "fix heat all mpm/heat contact ga gb conductance 1.0\n", "");
   expect_refused(
       scene,
       {{"fix heat all mpm/heat contact ga", "contact"},

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input ranks
 // mpi: 1 4
@@ -10,24 +10,20 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A bar with its left end at the temperature 1, and a source. */
-std::string warmed(const std::string &options)
+static std::string warmed(const std::string &options)
 {
   return bar(20, "xlo temperature 1.0 xhi convection 2.0 0.0 source v_s " + options) +
       "variable s atom 3*x\n";
 }
 
-/** Step of the scene disk() with a keyword every: with auto shorter ones, of which several are a tenth of the explicit limit. */
-std::string step(const std::string &every)
+/** Step of disk() with a keyword every: with auto several are a tenth of the explicit limit. */
+static std::string step(const std::string &every)
 {
   return every == "every auto" ? "timestep 0.004\n" : "timestep 0.02\n";
 }
 
-}    // namespace
-
-// at rest, five steps that wait for one conduction are one of five times the length, and nothing happens in between
+// at rest, five steps that wait for one conduction are one of five times the length
 PARAMETER_TEST(Bar, HasLongerSteps, const char *,
                Values("", "transfer xpic 3", "time sdirk2 tolerance 1e-12"))
 {
@@ -44,8 +40,8 @@ PARAMETER_TEST(Bar, HasLongerSteps, const char *,
   for (int i = 0; i < few.n(); i++) EXPECT_NEAR(a.T(i), b.T(i), 1e-12);
 }
 
-// heat of the flow between two cold walls, as with conduction in each step: (T - T0) k/(mu U^2) in the middle. What shears is warmed in each step,
-// and the heat of four leaves at once
+// heat of the flow between two cold walls, as with conduction in each step: (T - T0) k/(mu U^2) in
+// the middle. What shears is warmed in each step, and the heat of four leaves at once
 SERIAL_TEST(Couette, IsWarmInTheMiddle)
 {
   const auto middle = [](const std::string &every) {
@@ -72,29 +68,21 @@ SERIAL_TEST(Couette, IsWarmInTheMiddle)
   EXPECT_NE(each, fourth);
 }
 
-// bodies that fly, turn, and yield: heat is kept, and differs little from that of conduction in each step
+// bodies that fly, turn, and yield: heat is kept, nearly as with conduction in each step
 PARAMETER_TEST(Closed, KeepsHeat, const char *, Values("every 4", "every auto"))
 {
   const std::string every = GetParam();
   const std::string steps = step(every) + (every == "every auto" ? "run 500\n" : "run 100\n");
-  Scene each(disk("every 1") + steps);
-  Scene run(disk(every) + "run 0\n");
-  const double before = Warm(run, "m").heat() + Warm(run, "n").heat();
-  run.commands("compute e all mpm/energy\n" + steps);
-  const double *const e = run.compute_vector();
-  const double made = e[4], after = Warm(run, "m").heat() + Warm(run, "n").heat();
-  EXPECT_GT(made, 0.1);
-  EXPECT_NEAR((after - before - made) / before, 0.0, 1e-13);
-  EXPECT_NEAR(e[14] / before, 0.0, 1e-13);    // conducted heat
-  EXPECT_NEAR(e[10], 0.0, 1e-11);             // residual
+  Scene each(disk("every 1") + steps), run(disk(every));
+  expect_disk_keeps_heat(run, steps);
   // temperatures are between 0.7 and 2
   const double difference = measured("difference", temperature_difference(each, run));
   EXPECT_GT(difference, 1e-6);
   EXPECT_LT(difference, 0.02);
 }
 
-// two bodies, periodic along x, one of which slides on the other: what friction takes is there at once, in the right body, and is conducted as
-// in each step
+// two bodies, periodic along x, one of which slides on the other: what friction takes is there at
+// once, in the right body, and is conducted as in each step
 TEST(Friction, HeatsBothBodies)
 {
   const auto text = [](const std::string &every) {
@@ -109,12 +97,8 @@ TEST(Friction, HeatsBothBodies)
         "fix heat all mpm/heat " +
         every + "\ntimestep 0.002\ncompute e all mpm/energy\n";
   };
-  const auto spread = [](Scene &run, const char *id) {
-    Warm warm(run, id);
-    double most = 0.0;
-    for (int i = 0; i < run.n(); i++)
-      if (warm.has(i)) most = std::max(most, warm.T(i));
-    return over_ranks(most, MPI_MAX);
+  const auto hottest = [](Scene &run, const char *id) {
+    return Warm(run, id).range()[1];
   };
   Scene each(text("every 1") + "run 400\n"), fourth(text("every 4") + "run 2\n");
   const double m0 = Warm(fourth, "m").heat();
@@ -127,7 +111,7 @@ TEST(Friction, HeatsBothBodies)
     const double one = Warm(each, id).heat(), other = Warm(fourth, id).heat();
     EXPECT_GT(one, 0.05);
     EXPECT_NEAR(measured(std::string("heat of ") + id, other) / one, 1.0, 1e-11);
-    EXPECT_NEAR(measured(std::string("hottest of ") + id, spread(fourth, id)) / spread(each, id),
+    EXPECT_NEAR(measured(std::string("hottest of ") + id, hottest(fourth, id)) / hottest(each, id),
                 1.0, 0.01);
   }
   OnRanks run(text("every 4"), "run 50\n");
@@ -143,18 +127,7 @@ PARAMETER_TEST(Ranks, Agree, const char *, Values("every 4", "every auto"))
 // a restart file between two conductions
 PARAMETER_TEST(Restart, Continues, const char *, Values("every 4", "every auto"))
 {
-  const std::string scene = disk(GetParam()) + step(GetParam()),
-                    tail = scene.substr(scene.find("fix m one"));
-  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n";
-  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
-    end = tail.find('\n', at);
-    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
-  }
-  Continued run(scene, 30, fixes + step(GetParam()), 33);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
-  const auto one = temperatures(run.whole), two = temperatures(run.again);
-  ASSERT_EQ(one.size(), two.size());
-  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
+  expect_disk_continues(disk(GetParam()) + step(GetParam()), 33);
 }
 
 // between two conductions the power is that of the last one, also after a restart file
@@ -162,9 +135,7 @@ TEST(Restart, KeepsThePower)
 {
   const std::string scene =
       bar(20, "every 10 xlo temperature 1.0 source v_s") + "variable s atom 3*x\ntimestep 2e-6\n";
-  Continued run(scene, 15,
-                "neighbor 0.005 bin\nvariable s atom 3*x\n" + scene.substr(scene.find("fix grid")),
-                3);
+  Continued run(scene, 15, lines_again(scene), 3);
   for (const int k : {0, 6}) {
     const double power = run.whole.fix("heat")->compute_vector(k);
     EXPECT_GT(power, 0.0);
@@ -186,7 +157,7 @@ static std::vector<int> conductions(Scene &run, int n)
   return steps;
 }
 
-// a bar of 20 cells whose end is heated suddenly, explicit limit 8.1e-4: few steps wait while temperatures change fast, and ten later on
+// a bar of 20 cells is heated suddenly, explicit limit 8.1e-4: few steps wait first, ten later on
 TEST(Auto, WaitsWhereLittleChanges)
 {
   Scene run(bar(20, "every auto xlo temperature 1.0 xhi flux 0.01"));
@@ -216,16 +187,14 @@ TEST(Auto, IsAsExact)
     Scene run(bar(20, "xlo temperature 1.0 " + every));
     run_to(run, t, 1.0e-5);
     *power = run.fix("heat")->compute_scalar() / (4.0 / 20.0);
-    return Warm(run)
-        .error([&](const double *x) {
-          double T = 1.0;
-          for (int k = 0; k < 60; k++) {
-            const double b = (k + 0.5) * PI;
-            T -= 2.0 / b * std::sin(b * x[0]) * std::exp(-b * b * t);
-          }
-          return T;
-        })
-        .rms;
+    return Warm(run).rms([&](const double *x) {
+      double T = 1.0;
+      for (int k = 0; k < 60; k++) {
+        const double b = (k + 0.5) * PI;
+        T -= 2.0 / b * std::sin(b * x[0]) * std::exp(-b * b * t);
+      }
+      return T;
+    });
   };
   double heat[2];
   const double each = measured("every step", error("every 1", heat)),
@@ -248,7 +217,7 @@ SERIAL_TEST(Auto, IsTheDefault)
   EXPECT_EQ(temperature_difference(plain, run), 0.0);
 }
 
-// what changes from step to step, and what is fast or near the limit, is as with every 1, to the last bit
+// what changes from step to step, is fast, or near the limit, is as with every 1, bit by bit
 PARAMETER_TEST(Auto, DoesNotWait, const char *,
                Values("xlo temperature v_hot", "xhi convection v_hot 0.0", "source v_hot",
                       "region wall temperature 1.0", "time sdirk2"))
@@ -265,7 +234,7 @@ PARAMETER_TEST(Auto, DoesNotWait, const char *,
   EXPECT_EQ(each.fix("heat")->compute_scalar(), run.fix("heat")->compute_scalar());
 }
 
-// friction needs conduction in each step where not all materials conduct, and an input need not say so
+// friction needs conduction in each step where not all materials conduct; no input says so
 TEST(Auto, KnowsMaterialsThatDoNotConduct)
 {
   const auto scene = [](const std::string &every) {

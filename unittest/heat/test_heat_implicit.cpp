@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -7,47 +7,15 @@
 
 // Fix mpm/heat time euler and sdirk2: implicit steps of the conduction of heat.
 
-#include "heat/heat_exact.h"
+#include "heat/heat_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-double wall_heats(double x, double t)
-{
-  double T = 1.0 - x;
-  for (int k = 1; k < 400; k++)
-    T -= 2.0 / (k * PI) * std::sin(k * PI * x) * std::exp(-k * k * PI * PI * t);
-  return T;
-}
-
-const char *const WALL = "region wall block 1 2 INF INF INF INF\n";
-
-/** A bar from 0 to 1 in a box that is longer, shift node spacings from a node. */
-std::string bar_in_box(int n, double shift, const std::string &heat, double T0)
-{
-  const double h = 1.0 / n;
-  return plane("lj", "f p", strprintf("0 1.5 0 %.17g", 4 * h), 1, 0.1 * h) + WALL +
-      "region bar block 0 1 INF INF INF INF\n" +
-      strprintf("create_points 1 region bar spacing %.17g\n", 0.5 * h) +
-      strprintf("fix grid all mpm %.17g origin %.17g 0\n", h, 1.0 - shift * h) +
-      strprintf(
-             "fix m all mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 %g 1.0\n",
-             T0) +
-      "fix heat all mpm/heat " + heat + "\n";
-}
-
-}    // namespace
-
-// The amplitude of a cosine is that of the scheme to the errors of the lattice, R(z)^n with z = -4 pi^2 dt, and comes to the exact one, 0.139
+// The amplitude of a cosine is that of the scheme to the errors of the lattice, R(z)^n with
+// z = -4 pi^2 dt, and comes to the exact one, 0.139
 PARAMETER_TEST(Order, InTime, const char *, Values("euler", "sdirk2"))
 {
   const std::string time = GetParam();
-  const auto wave = [](double amplitude) {
-    return [=](const double *x) {
-      return 1.0 + amplitude * std::cos(2.0 * PI * x[0]);
-    };
-  };
   const double end = 0.05, g = 1.0 - std::sqrt(0.5);
   double rms[3];
   for (int k = 0; k < 3; k++) {
@@ -58,31 +26,25 @@ PARAMETER_TEST(Order, InTime, const char *, Values("euler", "sdirk2"))
         : (1.0 + (1.0 - 2.0 * g) * z) / ((1.0 - g * z) * (1.0 - g * z));
     Scene run(bar(80, "time " + time));
     Warm warm(run);
-    warm.set(wave(1.0));
+    warm.set(cosine(1.0, 0.5));
     run_to(run, end, end / steps);
     rms[k] = measured(strprintf("%s, %d steps, rms", GetParam(), steps),
-                      warm.error(wave(std::exp(-4.0 * PI * PI * end))).rms);
-    EXPECT_LT(measured("from the scheme", warm.error(wave(std::pow(R, steps))).rms), 4.0e-4);
+                      warm.rms(cosine(std::exp(-4.0 * PI * PI * end), 0.5)));
+    EXPECT_LT(measured("from the scheme", warm.rms(cosine(std::pow(R, steps), 0.5))), 4.0e-4);
   }
   EXPECT_GT(measured("order", std::log2(rms[1] / rms[2])), time == "euler" ? 0.9 : 1.9);
 }
 
-// the end of a bar is heated suddenly: no scheme swings, and few steps are enough for the second-order one
+// the end of a bar is heated suddenly: no scheme swings, second order needs few steps
 SERIAL_TEST(Ends, HaveTheirTemperature)
 {
   for (const double offset : {0.0, 0.25, 0.5}) {
     double rms[2];
-    for (int k = 0; k < 2; k++) {
-      const int n = 20 << k;
-      Scene run(bar(n, "xlo temperature 1.0 xhi temperature 0.0 time sdirk2", offset));
-      run_to(run, 0.1, 0.1 / (10 << k));
-      rms[k] = measured(strprintf("offset %g, %d cells, rms", offset, n),
-                        Warm(run)
-                            .error([](const double *x) {
-                              return wall_heats(x[0], 0.1);
-                            })
-                            .rms);
-    }
+    for (int k = 0; k < 2; k++)
+      rms[k] = measured(
+          strprintf("offset %g, %d cells, rms", offset, 20 << k),
+          error_of_wall(bar(20 << k, "xlo temperature 1.0 xhi temperature 0.0 time sdirk2", offset),
+                        0.1 / (10 << k)));
     EXPECT_LT(rms[1], 3.0e-4);
     EXPECT_LT(rms[1], 0.5 * rms[0]);
   }
@@ -105,41 +67,33 @@ SERIAL_TEST(Long, StepsAreSteady)
 struct Slab {
   double Bi, t, face;
 };
-PARAMETER_TEST(Convection, CoolsASlab, Slab,
-               Values(Slab{1.0, 0.5, 0.504522}, Slab{10.0, 0.1, 0.170574}))
+SERIAL_PARAMETER_TEST(Convection, CoolsASlab, Slab,
+                      Values(Slab{1.0, 0.5, 0.504522}, Slab{10.0, 0.1, 0.170574}))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const Slab slab = GetParam();
-  for (const bool free : {true, false})
+  for (const char *where : {"surface", "region wall"})
     for (const double shift : {0.0, 0.5}) {
       const int n = 40;
-      Scene run(bar_in_box(
-          n, shift,
-          strprintf("%s convection %g 0.0 time sdirk2", free ? "surface" : "region wall", slab.Bi),
-          1.0));
+      Scene run(
+          bar_in_box(n, shift, strprintf("%s convection %g 0.0 time sdirk2", where, slab.Bi), 1.0));
       Warm warm(run);
       const double before = warm.heat();
       run_to(run, slab.t, slab.t / 20);
-      const double h = 1.0 / n, near = warm.at(1.0 - 0.25 * h, 0.25 * h, 0.1 * h),
-                   next = warm.at(1.0 - 0.75 * h, 0.25 * h, 0.1 * h);
-      EXPECT_NEAR(measured(free ? "free" : "region", 1.5 * near - 0.5 * next) / slab.face, 1.0,
-                  0.01);
-      EXPECT_NEAR((warm.heat() - before) / run.fix("heat")->compute_scalar(), 1.0, 1e-12);
+      EXPECT_NEAR(measured(where, warm.at_face(1.0, -1, 1.0 / n)) / slab.face, 1.0, 0.01);
+      EXPECT_NEAR((warm.heat() - before) / heat_in(run), 1.0, 1e-12);
     }
 }
 
-// a region with a temperature, in steps from below the explicit limit to far above it: equations that are not symmetric
+// a region with a temperature, in short and long steps: equations that are not symmetric
 SERIAL_TEST(Temperature, OfARegion)
 {
   for (const int steps : {10, 100, 1000}) {
     Scene run(
         bar_in_box(20, 0.25, "region wall temperature 1.0 xlo temperature 0.0 time sdirk2", 0.0));
     run_to(run, 0.1, 0.1 / steps);
-    const double rms = Warm(run)
-                           .error([](const double *x) {
-                             return wall_heats(1.0 - x[0], 0.1);
-                           })
-                           .rms;
+    const double rms = Warm(run).rms([](const double *x) {
+      return wall_heats(1.0 - x[0], 0.1);
+    });
     EXPECT_LT(measured(strprintf("%d steps, rms", steps), rms), 2.0e-3);
   }
 }
@@ -154,9 +108,8 @@ SERIAL_TEST(Contact, SteadyFlux)
         "region a block 0 1 INF INF INF INF\nregion b block 1 2 INF INF INF INF\n"
         "create_points 1 region a spacing 0.025\ncreate_points 2 region b spacing 0.025\n"
         "group a type 1\ngroup b type 2\nfix ga a mpm 0.05 origin 0.9875 0 dtcheck no\n"
-        "fix gb b mpm 0.05 origin 0.9875 0 dtcheck no\n"
-        "fix ma a mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0 1.0\n"
-        "fix mb b mpm/material density 1.0 eos linear 1e-6 thermal conducting 1.0 0 4.0\n"
+        "fix gb b mpm 0.05 origin 0.9875 0 dtcheck no\n" +
+        conductor("1.0", 0.0, "ma a") + conductor("4.0", 0.0, "mb b") +
         "fix touch all mpm/contact ga gb\nfix heat all mpm/heat xlo temperature 1 xhi temperature "
         "0 time euler contact ga gb conductance " +
         H + "\ntimestep 1e4\nrun 3\n");
@@ -166,7 +119,7 @@ SERIAL_TEST(Contact, SteadyFlux)
   }
 }
 
-// a plate that radiates at both sides for 600 s, in 20 steps (benchmark as of test_heat_surface): Newton's method
+// a plate that radiates at both sides for 600 s, in 20 steps (see test_heat_surface)
 SERIAL_TEST(Plate, Radiates)
 {
   Scene run(plane("si", "f p", "-0.01 0.02 0 0.004", 1, 0.0001) +
@@ -180,7 +133,7 @@ SERIAL_TEST(Plate, Radiates)
   EXPECT_NEAR(measured("T", T), 484.5102, 2.0);
 }
 
-// NAFEMS T2, the steady state of radiation, in steps of weeks; and for a bar that conducts so badly that only Newton's method finds it
+// NAFEMS T2, the steady state, in steps of weeks; also where only Newton's method finds it
 SERIAL_TEST(Radiation, SteadyState)
 {
   for (const double k : {55.6, 0.556}) {
@@ -199,16 +152,13 @@ SERIAL_TEST(Radiation, SteadyState)
                    strprintf("%g", h)) +
               "fix heat all mpm/heat xlo temperature 1000 xhi radiation 0.98 300 time euler\n"
               "timestep 1e7\nrun 4\n");
-    Warm warm(run);
-    const double near = warm.at(0.1 - 0.25 * h, 0.25 * h, 0.1 * h),
-                 next = warm.at(0.1 - 0.75 * h, 0.25 * h, 0.1 * h);
-    EXPECT_NEAR(measured("face", 1.5 * near - 0.5 * next), low, 0.05);
+    EXPECT_NEAR(measured("face", Warm(run).at_face(0.1, -1, h)), low, 0.05);
     const double *power = run.fix_vector("heat", 7);
     EXPECT_NEAR(power[0] / power[1], -1.0, 1e-4);
   }
 }
 
-// the same with Bernstein polynomials, at a free end and at a region, wherever these are in a cell but next to a side of it
+// the same with Bernstein polynomials, at a free end and at a region, but next to a side of a cell
 SERIAL_TEST(Radiation, SteadyStateOfBernstein)
 {
   constexpr double h = 0.005, flux = 55.6 * (1000.0 - 927.0040) / 0.1;
@@ -228,21 +178,13 @@ SERIAL_TEST(Radiation, SteadyStateOfBernstein)
     }
 }
 
-// heat is kept to round-off while bodies collide, however inexact solutions are, and the ledger closes
+// heat is kept to round-off while bodies collide, however inexact solutions are
 PARAMETER_TEST(Closed, KeepsHeat, const char *,
                Values("time euler tolerance 1e-2", "time sdirk2 tolerance 1e-2",
                       "time sdirk2 transfer xpic 4"))
 {
-  Scene run(disk(GetParam()) + "compute e all mpm/energy\nrun 0\n");
-  const double before = Warm(run, "m").heat() + Warm(run, "n").heat();
-  run.commands("run 100\n");
-  const double made = run.compute_vector()[4];
-  const double after = Warm(run, "m").heat() + Warm(run, "n").heat();
-  EXPECT_GT(made, 0.1);
-  EXPECT_NEAR((after - before - made) / before, 0.0, 1e-13);
-  const double *const e = run.compute_vector();
-  EXPECT_NEAR(e[14] / before, 0.0, 1e-13);    // conducted heat
-  EXPECT_NEAR(e[10], 0.0, 1e-11);             // residual
+  Scene run(disk(GetParam()));
+  expect_disk_keeps_heat(run, "run 100\n");
 }
 
 // Stefan's problem in steps of 100 explicit limits: the latent heat
@@ -251,15 +193,11 @@ SERIAL_TEST(Front, Moves)
   const int n = 50;
   Scene run(replaced(bar(n, "xlo temperature 1.0 time sdirk2"), "1.0 0 1.0", "1.0 0 1.0 melt 0 1"));
   run_to(run, 0.1, 100 * 0.3267 / (n * n));
-  Warm warm(run);
-  const int molten = warm.material->find_history("molten");
-  double liquid = 0.0;
-  for (int i = 0; i < run.n(); i++) liquid += warm.material->history[i][molten] / run.n();
-  EXPECT_NEAR(measured("molten", liquid), 0.392162, 0.004);
+  EXPECT_NEAR(measured("molten", Warm(run).melt()[0]), 0.392162, 0.004);
 }
 
-// a body around a hot cylinder, and a ring around a hot ring, free outside: surfaces that lines of both axes cross share these
-// conditions, and must not hold more than there is; explicit steps are the reference
+// a body around a hot cylinder, and a ring around a hot ring, free outside: surfaces that lines of
+// both axes cross share conditions; explicit steps are the reference
 SERIAL_TEST(Hole, AsInExplicitSteps)
 {
   for (const char *grid : {"shape gimp", "shape cubic axisymmetric yes"}) {
@@ -294,26 +232,13 @@ TEST(Ranks, Agree)
   for (const auto &scene : {disk("time euler tolerance 1e-12"), walls}) {
     OnRanks run(scene, "run 60\n");
     EXPECT_LT(measured("difference", temperature_difference(run.serial, run.parallel)), 1e-11);
-    EXPECT_NEAR(run.serial.fix("heat")->compute_scalar(),
-                run.parallel.fix("heat")->compute_scalar(), 1e-10);
+    EXPECT_NEAR(heat_in(run.serial), heat_in(run.parallel), 1e-10);
   }
 }
 
 PARAMETER_TEST(Restart, Continues, const char *, Values("time euler", "time sdirk2"))
 {
-  const std::string scene = disk(std::string("surface convection 0.3 0.0 ") + GetParam());
-  const std::string tail = scene.substr(scene.find("fix m one"));
-  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n";
-  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
-    end = tail.find('\n', at);
-    if (tail.compare(at, 4, "fix ") == 0) fixes += tail.substr(at, end - at) + "\n";
-  }
-  Continued run(scene, 30, fixes + "timestep 0.02\n", 30);
-  EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
-  const auto one = temperatures(run.whole), two = temperatures(run.again);
-  ASSERT_EQ(one.size(), two.size());
-  EXPECT_EQ(memcmp(one.data(), two.data(), one.size() * sizeof(Named)), 0);
-  EXPECT_EQ(run.whole.fix("heat")->compute_scalar(), run.again.fix("heat")->compute_scalar());
+  expect_disk_continues(disk(std::string("surface convection 0.3 0.0 ") + GetParam()));
 }
 
 SERIAL_TEST(BadInput, IsRefused)

@@ -1,17 +1,15 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
 // timeout: 300
 
-// Heat that materials make of their own work, and solids that become liquids, in bodies of many points.
+// Heat that materials make of their own work, and solids that become liquids, in whole bodies.
 
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
-
-namespace {
 
 /** A history variable of the points of a material. */
 struct History {
@@ -38,9 +36,8 @@ struct History {
   }
 };
 
-/** Couette flow of width 1 with n cells between walls with the velocities 0 and 1; what flows has a unit density,
- *  specific heat, and conductivity. */
-std::string couette(int n, const std::string &material, const std::string &heat)
+/** Couette flow of width 1, n cells, walls at 0 and 1; all properties are 1. */
+static std::string couette(int n, const std::string &material, const std::string &heat)
 {
   const double h = 1.0 / n;
   return plane("lj", "p f", strprintf("0 %.17g 0 1", 4 * h), 1, 0.2 * h) +
@@ -52,16 +49,14 @@ std::string couette(int n, const std::string &material, const std::string &heat)
 }
 const std::string FLUID = "eos linear 100.0 viscosity newtonian 1.0 thermal conducting 1.0 0.0 1.0";
 
-void run_to(Scene &run, double t)
+static void run_to(Scene &run, double t)
 {
   run.commands(strprintf("variable time equal time\nfix until all halt 1 v_time >= %.17g error "
                          "continue message no\nrun 100000\nunfix until\n",
                          t - 1e-9));
 }
 
-}    // namespace
-
-// Viscous heat between two cold walls: (T - T0) k/(mu U^2) in the middle from a uniform source, and in the end y (1 - y)/2
+// Viscous heat between cold walls: (T - T0) k/(mu U^2) from a uniform source, at last y (1 - y)/2
 TEST(Couette, IsWarmInTheMiddle)
 {
   const int n = 20;
@@ -120,7 +115,7 @@ TEST(Couette, OfAMelt)
   EXPECT_LT(measured("difference", difference(fluid.gather(), melt.gather())), 1e-12);
 }
 
-// Metal that is sheared evenly softens by its own heat: 67.97364 K and 275.5936 MPa at a plastic strain of 1
+// Sheared metal softens by its own heat: 67.97364 K and 275.5936 MPa at a plastic strain of 1
 SERIAL_TEST(AdiabaticShear, OfABlock)
 {
   const double h = 1e-4, rate = 2e5;
@@ -149,10 +144,8 @@ SERIAL_TEST(AdiabaticShear, OfABlock)
   EXPECT_NEAR(energy[4] / energy[2], 0.9, 1e-10);
 }
 
-namespace {
-
 /** A bar that is heated at one end until that has molten, and pulled. */
-std::string bar(const std::string &more)
+static std::string bar(const std::string &more)
 {
   return plane("lj", "f f", "0 6 0 2", 1, 0.1) + "fix grid all mpm 0.25\n" +
       "region bar block 0 4 0.5 1.5 -0.5 0.5\ncreate_points 1 region bar ppc 2\n"
@@ -163,8 +156,6 @@ std::string bar(const std::string &more)
       "variable v atom 0.4*x\nvelocity all set v_v 0 0\ncompute e all mpm/energy\n";
 }
 
-}    // namespace
-
 // the molten end has no strength; no energy is lost on the way
 TEST(Bar, LosesItsStrengthWhereItMelts)
 {
@@ -172,12 +163,11 @@ TEST(Bar, LosesItsStrengthWhereItMelts)
   History f(run, "molten"), e(run, "eplastic");
   double liquid = 0.0, solid = 0.0, strongest = 0.0, hard = 0.0, strain = 0.0;
   for (int i = 0; i < run.n(); i++) {
-    double s[6];
-    run.points().cauchy(i, s);
+    const auto s = run.cauchy(i);
     const double p = -(s[0] + s[1] + s[2]) / 3.0;
-    const double q = std::sqrt(1.5 *
-                               ((s[0] + p) * (s[0] + p) + (s[1] + p) * (s[1] + p) +
-                                (s[2] + p) * (s[2] + p) + 2 * s[3] * s[3]));
+    const double q = std::sqrt(
+        1.5 *
+        (std::pow(s[0] + p, 2) + std::pow(s[1] + p, 2) + std::pow(s[2] + p, 2) + 2 * s[3] * s[3]));
     if (f.at(i) >= 1.0) {
       liquid++;
       strongest = std::max(strongest, q);
@@ -208,13 +198,6 @@ TEST(Bar, OnAnyNumberOfRanks)
 TEST(Bar, Restart)
 {
   const std::string scene = bar("expansion 0.01") + "timestep 0.003\n";
-  std::string fixes = "neighbor 0.1 bin\nfix grid all mpm 0.25\n";
-  const std::string tail = scene.substr(scene.find("fix m all"));
-  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
-    end = tail.find('\n', at);
-    if (tail.compare(at, 4, "fix ") == 0 || tail.compare(at, 7, "compute") == 0)
-      fixes += tail.substr(at, end - at) + "\n";
-  }
-  Continued run(scene, 150, fixes + "timestep 0.003\n", 150);
+  Continued run(scene, 150, lines_again(scene), 150);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }

@@ -1,20 +1,18 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 3
 // timeout: 200
 
-// Heat of friction between bodies on different lattices, fix mpm/heat penalty; warnings of friction that warms nothing.
+// Heat of friction between bodies on different lattices (fix mpm/heat penalty), and warnings.
 
 #include "heat/heat_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A block slides on another one, which has other nodes and a fourth of its effusivity. */
-std::string sliding(const std::string &heat = "penalty yes")
+static std::string sliding(const std::string &heat = "penalty yes")
 {
   return plane("lj", "p f", "0 7 0 8", 2, 0.3) + "comm_modify vel yes\n" +
       fields({{"one", "block INF INF 0 4 INF INF", "1.0"},
@@ -38,13 +36,10 @@ timestep 0.005
 )";
 }
 
-double heat_of(Scene &run, const char *id)
+static double heat_of(Scene &run, const char *id)
 {
-  Warm warm(run, id);
-  return warm.heat();
+  return Warm(run, id).heat();
 }
-
-}    // namespace
 
 // what the motion loses is heat, which the two have as their effusivities
 SERIAL_TEST(Sliding, WarmsBoth)
@@ -90,18 +85,12 @@ PARAMETER_TEST(Ranks, Agree, const char *, Values("on", "off"))
 TEST(Restart, Continues)
 {
   const std::string scene = sliding();
-  std::string next = "neighbor 0.3 bin\ncomm_modify vel yes\n";
-  for (std::size_t at = 0, end; at < scene.size(); at = end + 1) {
-    end = scene.find('\n', at);
-    if (scene.compare(at, 4, "fix ") == 0 && scene.compare(at, 7, "fix sum") != 0)
-      next += scene.substr(at, end - at) + "\n";
-  }
-  Continued run(scene, 60, next + "timestep 0.005\n", 40);
+  Continued run(scene, 60, lines_again(scene), 40);
   // to round-off, as the order of points in neighbor lists is another one
   EXPECT_LT(measured("difference", difference(run.whole.gather(), run.again.gather())), 1e-12);
-  const double made = run.whole.fix("heat")->compute_scalar();
+  const double made = heat_in(run.whole);
   EXPECT_GT(made, 1.0);
-  EXPECT_NEAR(run.again.fix("heat")->compute_scalar() / made, 1.0, 1e-12);
+  EXPECT_NEAR(heat_in(run.again) / made, 1.0, 1e-12);
   EXPECT_NEAR(heat_of(run.again, "m") / made, 0.2, 1e-12);
   EXPECT_NEAR(heat_of(run.again, "n") / made, 0.8, 1e-12);
 }

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
@@ -10,16 +10,13 @@
 #include "mpm_lammps.h"
 
 #include <complex>
-#include <set>
 
 using namespace MPM_TEST;
-
-namespace {
 
 constexpr int THERMOELASTIC = 19;    // place in compute mpm/energy with fix mpm/heat
 
 /** Sets T = f(x) of all points with a temperature. */
-template <class F> void set_temperature(Scene &run, const F &f)
+template <class F> static void set_temperature(Scene &run, const F &f)
 {
   for (auto *fix : run.lmp->modify->get_fix_by_style("^mpm/material$")) {
     auto *const material = dynamic_cast<FixMPMMaterial *>(fix);
@@ -30,7 +27,7 @@ template <class F> void set_temperature(Scene &run, const F &f)
 }
 
 /** Mean of f(i) over the points of all ranks where it is finite. */
-template <class F> double mean_of(Scene &run, const F &f)
+template <class F> static double mean_of(Scene &run, const F &f)
 {
   double sum = 0.0, n = 0.0;
   for (int i = 0; i < run.n(); i++)
@@ -42,15 +39,14 @@ template <class F> double mean_of(Scene &run, const F &f)
   return all[0] / all[1];
 }
 
-double stress_xx(Scene &run, int i)
+static double stress_xx(Scene &run, int i)
 {
-  double s[6];
-  run.points().cauchy(i, s);
+  const auto s = run.cauchy(i);
   return s[0];
 }
 
 /** Runs up to this time, or just beyond it. */
-void run_until(Scene &run, double t)
+static void run_until(Scene &run, double t)
 {
   run.commands("variable time equal time\n" +
                strprintf("fix until all halt 1 v_time >= %g error continue\n", t) +
@@ -58,20 +54,18 @@ void run_until(Scene &run, double t)
 }
 
 /** Mean temperature of a bar that is heated from one end, the other one held. */
-double mean_temperature(double t)
+static double mean_temperature(double t)
 {
   double T = 0.5;
   for (int k = 1; k < 400; k += 2) T -= 4.0 / (k * k * PI * PI) * std::exp(-k * k * PI * PI * t);
   return T;
 }
 
-}    // namespace
-
-// A bar between walls whose ends are held at 1 and 0: -E ALPHA times the mean temperature; with a free end, the
-// displacement of that. Waves are fast and damped.
-PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
+// A bar between walls whose ends are held at 1 and 0: -E ALPHA times the mean temperature; with a
+// free end, the displacement of that. Waves are fast and damped.
+SERIAL_PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  LONG_AFTER(1);
   const bool clamped = GetParam();
   const int n = 20;
   const double h = 1.0 / n, E = 1.0e4, alpha = 1.0e-4;
@@ -105,8 +99,8 @@ PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
                       -mean_temperature(now),
                   1.0, 0.01);
     } else {
-      // insulated end: integral of T = 1 - sum 4/(k pi) sin(k pi x/2) exp(-(k pi/2)^2 t) up to the mean place of
-      // the last cell
+      // insulated end: integral of T = 1 - sum 4/(k pi) sin(k pi x/2) exp(-(k pi/2)^2 t) up to the
+      // mean place of the last cell
       double T = 1.0 - 0.5 * h;
       for (int k = 1; k < 400; k += 2)
         T -= 8.0 / (k * k * PI * PI) * std::exp(-0.25 * k * k * PI * PI * now) *
@@ -122,8 +116,8 @@ PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
   EXPECT_NEAR(e[10], 0.0, 1e-12 * std::fabs(e[4]) + 1e-14);
 }
 
-// After 0.01 only a tenth of the bar is warm: stiffer, so that waves are faster than that, and twice as many cells, as
-// the conduction of heat has an error of 2.0 % with 20 of them and of 0.5 % with 40
+// After 0.01 only a tenth of the bar is warm: stiffer, so that waves are faster than that, and 40
+// cells, as the conduction of heat has an error of 2.0 % with 20 and of 0.5 % with 40
 SERIAL_TEST(HeatedBar, AtItsStart)
 {
   const int n = 40;
@@ -143,11 +137,8 @@ SERIAL_TEST(HeatedBar, AtItsStart)
               0.01);
 }
 
-namespace {
-
-/** Amplitude of the thermoelastic mode at t by the roots of (s^2 + k^2)(s + K k^2) + delta k^2 s = 0, k = pi:
- *  u = U sin(pi x), from rest. */
-double mode(double delta, double K, double t)
+/** Amplitude of a mode by the roots of (s^2 + k^2)(s + K k^2) + delta k^2 s = 0, k = pi. */
+static double mode(double delta, double K, double t)
 {
   using C = std::complex<double>;
   const double k2 = PI * PI;
@@ -173,10 +164,8 @@ struct Mode {
   int cells;
 };
 
-}    // namespace
-
-// One standing wave between rollers whose compressions are warm, and lose heat to the expansions: in the same
-// law the frequency is between the isothermal and the adiabatic one, and the wave decays
+// One standing wave between rollers whose compressions are warm, and lose heat to the expansions:
+// by the same law the frequency is between isothermal and adiabatic, and the wave decays
 PARAMETER_TEST(ThermoelasticMode, HasItsFrequencyAndDecay, Mode,
                Values(Mode{0.1, 1 / PI, 40}, Mode{0.5, 1 / PI, 40}, Mode{0.1, 0.01, 80},
                       Mode{0.1, 10.0, 40}))
@@ -214,9 +203,10 @@ PARAMETER_TEST(ThermoelasticMode, HasItsFrequencyAndDecay, Mode,
                    }) /
         amplitude;
   };
-  // kinetic, elastic (at the first temperature), and thermal energy of the linear theory, one step before now; no
-  // energy of the ledger goes astray. Velocities belong to times half a step before those of places: the kinetic
-  // energy is that of the velocities then and now, one times the other, and does not swing with the step
+  // kinetic, elastic (at the first temperature), and thermal energy of the linear theory, one step
+  // before now; no energy of the ledger goes astray. Velocities belong to times half a step before
+  // those of places: the kinetic energy is that of the velocities then and now, one times the
+  // other, and does not swing with the step
   std::vector<double> mine(X.size()), before(X.size());
   const auto energy = [&]() {
     std::fill(mine.begin(), mine.end(), 0.0);
@@ -254,13 +244,11 @@ PARAMETER_TEST(ThermoelasticMode, HasItsFrequencyAndDecay, Mode,
   EXPECT_LE(measured("largest growth of the energy", most), 0.0);
 }
 
-namespace {
-
 /** A free strip of two layers in plane strain. */
 struct Strip {
   double E1, E2, h1, alpha1, alpha2, length, nu = 0.0;
 };
-std::string strip(const Strip &s, int cells, const std::string &grid)
+static std::string strip(const Strip &s, int cells, const std::string &grid)
 {
   const double H = 0.1, h = H / cells;
   const auto material = [&](const char *group, double E, double alpha) {
@@ -279,7 +267,7 @@ std::string strip(const Strip &s, int cells, const std::string &grid)
 }
 
 /** Tags of the row of points that is the first one above y. */
-std::set<int> row_above(Scene &run, double y, double h)
+static std::set<int> row_above(Scene &run, double y, double h)
 {
   std::set<int> tags;
   for (int i = 0; i < run.n(); i++)
@@ -288,7 +276,7 @@ std::set<int> row_above(Scene &run, double y, double h)
 }
 
 /** Curvature of a row of points: fit of a circle by y = a + b x + c (x^2 + y^2). */
-double curvature(Scene &run, const std::set<int> &tags)
+static double curvature(Scene &run, const std::set<int> &tags)
 {
   double M[9] = {}, r[3] = {};
   for (int i = 0; i < run.n(); i++) {
@@ -312,20 +300,19 @@ double curvature(Scene &run, const std::set<int> &tags)
   return 2.0 * c[2] / std::sqrt(1.0 + c[1] * c[1] - 4.0 * c[0] * c[2]);
 }
 
-}    // namespace
-
-// A strip of two metals bends when it is warmed (S. Timoshenko, J. Opt. Soc. Am. 11 (1925) 233), in the updated
-// and in the total frame
-PARAMETER_TEST(Bimetal, Bends, const char *, Values("", "frame total"))
+// A strip of two metals bends when it is warmed (S. Timoshenko, J. Opt. Soc. Am. 11 (1925) 233), in
+// the updated and in the total frame
+SERIAL_PARAMETER_TEST(Bimetal, Bends, const char *, Values("", "frame total"))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   struct Case {
     double E2, h1, nu;
     int cells;
     double expected;    // with an expansion of 0.05
   };
-  for (const Case &c : {Case{100.0, 0.05, 0.0, 8, 0.75}, Case{50.0, 0.05, 0.0, 8, 0.727273},
-                        Case{25.0, 0.04, 0.0, 10, 0.734994}, Case{50.0, 0.05, 0.3, 8, 0.9454546}}) {
+  for (const Case &c :
+       first_of(1,
+                {Case{100.0, 0.05, 0.0, 8, 0.75}, Case{50.0, 0.05, 0.0, 8, 0.727273},
+                 Case{25.0, 0.04, 0.0, 10, 0.734994}, Case{50.0, 0.05, 0.3, 8, 0.9454546}})) {
     const Strip s = {100.0, c.E2, c.h1, 0.0, 1e-3, 1.0, c.nu};
     const double h = 0.1 / c.cells;
     Scene run(strip(s, c.cells, GetParam()) +
@@ -351,6 +338,7 @@ PARAMETER_TEST(Bimetal, Bends, const char *, Values("", "frame total"))
 // The benchmark's own size: an expansion of 5 %, which bends a strip of length 1 by 43 degrees
 SERIAL_TEST(Bimetal, BendsFar)
 {
+  LONG_CASE();
   const Strip s = {100.0, 100.0, 0.05, 0.0, 1e-3, 1.0};
   Scene run(strip(s, 8, "") + "fix damp all viscous 2.5e-4\ntimestep 4e-4\n");
   const auto middle = row_above(run, 0.05, 0.0125);
@@ -366,6 +354,7 @@ SERIAL_TEST(Bimetal, BendsFar)
 // A strip with a temperature that is linear through its depth bends without any stress
 SERIAL_TEST(Strip, BendsWithoutStress)
 {
+  LONG_CASE();
   const Strip s = {100.0, 100.0, 0.05, 1e-3, 1e-3, 0.5};
   const int cells = 16;
   Scene run(strip(s, cells, "") + "fix damp all viscous 2.5e-4\ntimestep 2.5e-4\n");
@@ -382,11 +371,9 @@ SERIAL_TEST(Strip, BendsWithoutStress)
   EXPECT_LT(measured("stress", most / (100.0 * 1e-3 * 5.0)), 1e-3);
 }
 
-namespace {
-
-/** A disk that spins and flies across the lattice and a block that melts it, with uneven temperatures: stress by
- *  expansion and by parameters that vary. */
-std::string collision(const std::string &heat)
+/** A disk that spins and flies across the lattice and a block that melts it, with uneven
+ *  temperatures: stress by expansion and by parameters that vary. */
+static std::string collision(const std::string &heat)
 {
   return plane("lj", "p p", "0 8 0 8", 3, 0.4) + "fix grid all mpm 0.5\n" +
       bodies({{"one", "sphere 3 4 0 1.6 side in"}, {"two", "block 5 6.6 3 5 -0.5 0.5"}}) +
@@ -397,8 +384,6 @@ std::string collision(const std::string &heat)
       "velocity one set 0.8 0.5 0\nvelocity two set -0.7 0.5 0\n" +
       heat + "compute e all mpm/energy\ntimestep 0.02\n";
 }
-
-}    // namespace
 
 /** The same with a body that melts and has an internal energy. */
 std::string energetic()
@@ -421,22 +406,15 @@ TEST(Ranks, Agree)
 PARAMETER_TEST(Restart, Continues, bool, Values(false, true))
 {
   const std::string scene = GetParam() ? energetic() : collision("fix heat all mpm/heat\n");
-  const std::string tail = scene.substr(scene.find("fix m one"));
-  std::string fixes = "neighbor 0.4 bin\nfix grid all mpm 0.5\n";
-  for (std::size_t at = 0, end; at < tail.size(); at = end + 1) {
-    end = tail.find('\n', at);
-    if (tail.compare(at, 4, "fix ") == 0 || tail.compare(at, 7, "compute") == 0)
-      fixes += tail.substr(at, end - at) + "\n";
-  }
-  Continued run(scene, 30, fixes + "timestep 0.02\n", 30);
+  Continued run(scene, 30, lines_again(scene), 30);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
   const double *const one = run.whole.compute_vector(), *const two = run.again.compute_vector();
   EXPECT_NE(one[THERMOELASTIC], 0.0);
   EXPECT_EQ(one[THERMOELASTIC], two[THERMOELASTIC]);
 }
 
-// P-waves of aluminum, without and with the heat of compression: 6197.82 and 6278.09 m/s. A bar between rollers; energy
-// goes from motion to stress and heat and back
+// P-waves of aluminum, without and with the heat of compression: 6197.82 and 6278.09 m/s. A bar
+// between rollers; energy goes from motion to stress and heat and back
 SERIAL_TEST(Wave, IsAdiabatic)
 {
   for (const bool coupled : {false, true}) {
@@ -501,10 +479,9 @@ TEST(Ledger, Closes)
   }
 }
 
-// A closed box of gas whose wall becomes twice as warm has twice the pressure: conducted heat is in the internal energy
-PARAMETER_TEST(Gas, InAClosedBox, const char *, Values("si", "cgs"))
+// A closed box of gas whose wall becomes twice as warm has twice the pressure
+SERIAL_PARAMETER_TEST(Gas, InAClosedBox, const char *, Values("si", "cgs"))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const bool si = GetParam() == std::string("si");
   const double m = si ? 1.0 : 100.0, density = si ? 1.2 : 1.2e-3, pressure = si ? 1e5 : 1e6;
   const double cv = pressure / (0.4 * density * 300), h = 0.1 * m, k = 1e3 * density * cv;
@@ -542,8 +519,8 @@ PARAMETER_TEST(Gas, InAClosedBox, const char *, Values("si", "cgs"))
   EXPECT_NEAR(run.compute_vector()[10], 0.0, 1e-10 * pressure * 0.4 * m * m);
 }
 
-// The heat that an explosive releases is conducted to an inert solid next to it, in a closed box: none is lost, and in the end
-// both have one temperature
+// The heat that an explosive releases is conducted to an inert solid next to it, in a closed box:
+// none is lost, and in the end both have one temperature
 SERIAL_TEST(Products, WarmWhatIsAround)
 {
   const double h = 0.005, C = 1630.0 * 1000.0;
@@ -581,7 +558,7 @@ SERIAL_TEST(Products, WarmWhatIsAround)
   EXPECT_NEAR(e[10] / 7e6, 0.0, 1e-13);
 }
 
-// units change nothing, nor do they change the coupling of heat and stress: a block that is compressed
+// units do not change the coupling of heat and stress: a block that is compressed
 SERIAL_TEST(Units, ChangeNothing)
 {
   const auto temperature = [](const char *units, double length, double time, double density,
@@ -608,13 +585,12 @@ SERIAL_TEST(Units, ChangeNothing)
   EXPECT_NEAR(temperature("metal", 1e10, 1e12, 0.602214076e-3, 1e-5, 1e-3 / 96485.33212), si, 1e-6);
 }
 
-// A free body that is warmed everywhere changes its size, and nothing else, in all frames and with all cures of locking
-PARAMETER_TEST(FreeBody, Expands, const char *,
-               Values("2 ", "2 frame total", "2 axisymmetric yes", "2 shape cpdi2", "2 shape cubic",
-                      "2 locking fbar", "2 scheme musl", "2 transfer flip 0.99", "3 ",
-                      "3 shape gimp"))
+// A free body that is warmed changes its size, and nothing else, in all frames, with all cures
+SERIAL_PARAMETER_TEST(FreeBody, Expands, const char *,
+                      Values("2 ", "2 frame total", "2 axisymmetric yes", "2 shape cpdi2",
+                             "2 shape cubic", "2 locking fbar", "2 scheme musl",
+                             "2 transfer flip 0.99", "3 ", "3 shape gimp"))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const std::string options = GetParam() + 2;
   const int dim = GetParam()[0] - '0';
   const double alpha = 1e-3, dT = 100.0;
@@ -643,8 +619,8 @@ PARAMETER_TEST(FreeBody, Expands, const char *,
     most = std::max(most, std::fabs(stress_xx(run, i)));
     J += run.points().jacobian(i) / run.n();
   }
-  // of the stress that walls would make; what is left comes of points that are anywhere in their cells. A ring has no
-  // drag, which would be different along its radius, and swings
+  // of the stress that walls would make; what is left comes of points that are anywhere in their
+  // cells. A ring has no drag, which would be different along its radius, and swings
   EXPECT_LT(measured(options + " stress", most / (100.0 * alpha * dT)), ring ? 0.1 : 0.05);
   EXPECT_NEAR(measured(options + " J", J), std::pow(theta, dim == 3 || ring ? 3 : 2),
               ring ? 0.01 : 1e-3);

@@ -127,8 +127,7 @@ inline std::string zlib_stored(const std::string &data)
   return out + bytes_of(b << 16 | a, true);
 }
 
-/** A PNG file. bits: per number; color: 0 gray, 2 colors, 3 palette, 4 gray with alpha; of:
- *  colors. */
+/** A PNG file. bits: per number; color: 0 gray, 2 colors, 3 palette, 4 gray with alpha. */
 inline std::string png(const Pixels &p, int bits = 8, int color = 0, const Palette &of = as_gray)
 {
   std::string rows, header = bytes_of((uint32_t) p.nx, true) + bytes_of((uint32_t) p.ny, true);

@@ -25,8 +25,6 @@ using namespace MPM_NS;
 using namespace MPM_TEST;
 using ::testing::HasSubstr;
 
-namespace {
-
 struct File {
   const std::string name;
   File(const std::string &base, const std::string &text) : name("test_image." + base)
@@ -38,37 +36,36 @@ struct File {
   ~File() { remove(name.c_str()); }
 };
 
-Image read(const std::string &text, const RawLayout &raw = {})
+static Image read(const std::string &text, const RawLayout &raw = {})
 {
   File file("in", text);
   return read_image(file.name, raw);
 }
 
-std::string failure(const std::function<void()> &f)
+template <class... Args> static std::string failure_of(const Args &...args)
 {
   try {
-    f();
+    read_image(args...);
   } catch (const std::runtime_error &e) {
     return e.what();
   }
   return "";
 }
-std::string failure(const std::string &text, const RawLayout &raw = {})
+static std::string failure(const std::string &text, const RawLayout &raw = {})
 {
-  return failure([&] {
-    read(text, raw);
-  });
+  const File file("in", text);
+  return failure_of(file.name, raw);
 }
 
 // values that tell columns, rows, and slices apart; 13 columns are no whole bytes of bits
-int odd(int i, int j, int k)
+static int odd(int i, int j, int k)
 {
   return (17 * i + 31 * j + 57 * k + i * j) % 251;
 }
 const Pixels picture(13, 7, 1, odd), stack(5, 4, 3, odd);
 
-void expect_values(const Image &image, const Pixels &p, const std::string &what, int factor = 1,
-                   int offset = 0)
+static void expect_values(const Image &image, const Pixels &p, const std::string &what,
+                          int factor = 1, int offset = 0)
 {
   ASSERT_EQ(image.n[0], p.nx) << what;
   ASSERT_EQ(image.n[1], p.ny) << what;
@@ -77,12 +74,10 @@ void expect_values(const Image &image, const Pixels &p, const std::string &what,
     ASSERT_EQ(image.gray(k), factor * p.values[k] + offset) << what << ", pixel " << k;
 }
 
-RawLayout raw_layout(const Pixels &p, ImageKind kind, bool big = false, int skip = 0)
+static RawLayout raw_layout(const Pixels &p, ImageKind kind, bool big = false, int skip = 0)
 {
   RawLayout layout;
-  layout.n[0] = p.nx;
-  layout.n[1] = p.ny;
-  layout.n[2] = p.nz;
+  layout.n[0] = p.nx, layout.n[1] = p.ny, layout.n[2] = p.nz;
   layout.kind = kind;
   layout.big_endian = big;
   layout.skip = skip;
@@ -157,7 +152,8 @@ TEST(Reader, Colors)
   }
 }
 
-template <class T> void expect_kind(const std::string &type, ImageKind kind, int factor, int offset)
+template <class T>
+static void expect_kind(const std::string &type, ImageKind kind, int factor, int offset)
 {
   const Pixels values(stack.nx, stack.ny, stack.nz, [=](int i, int j, int k) {
     return factor * odd(i, j, k) + offset;
@@ -197,22 +193,20 @@ TEST(Reader, NumbersOfAllKinds)
 
 TEST(Reader, SpaceDirections)
 {
-  std::string text = nrrd_header(stack, "uchar", "encoding: raw\n\n");
-  text.replace(text.find("spacings: 0.1 0.1 0.1"), 21,
-               "space directions: (0.3,0.4,0) (0,-2,0) (0,0,1e-3)");
-  const Image image = read(text + raw<uint8_t>(stack));
+  const auto with_directions = [](const std::string &directions) {
+    std::string text = nrrd_header(stack, "uchar", "encoding: raw\n\n");
+    text.replace(text.find("spacings: 0.1 0.1 0.1"), 21, "space directions: " + directions);
+    return read(text + raw<uint8_t>(stack));
+  };
+  const Image image = with_directions("(0.3,0.4,0) (0,-2,0) (0,0,1e-3)");
   EXPECT_NEAR(image.spacing[0], 0.5, 1e-15);
   EXPECT_EQ(image.spacing[1], 2.0);
   EXPECT_EQ(image.spacing[2], 1e-3);
   EXPECT_TRUE(image.turned);
-  for (const auto &[directions, turned] : {std::pair("(0.3,0,0) (0,2,0) (0,0,1e-3)", false),
-                                           std::pair("(0.3,0,0) (0,-2,0) (0,0,1)", true),
-                                           std::pair("(0,1,0) (2,0,0) (0,0,1)", true)}) {
-    std::string other = nrrd_header(stack, "uchar", "encoding: raw\n\n");
-    other.replace(other.find("spacings: 0.1 0.1 0.1"), 21,
-                  std::string("space directions: ") + directions);
-    EXPECT_EQ(read(other + raw<uint8_t>(stack)).turned, turned) << directions;
-  }
+  for (const auto &[directions, turned] :
+       {std::pair("(0.3,0,0) (0,2,0) (0,0,1e-3)", false),
+        std::pair("(0.3,0,0) (0,-2,0) (0,0,1)", true), std::pair("(0,1,0) (2,0,0) (0,0,1)", true)})
+    EXPECT_EQ(with_directions(directions).turned, turned) << directions;
 }
 
 TEST(Reader, NumberedFiles)
@@ -227,20 +221,15 @@ TEST(Reader, NumberedFiles)
   }
   const File other("0011.pgm", pgm(picture));
   expect_values(read_image("test_image.%04d.pgm", {}, {8, 10}), stack, "stack");
-  EXPECT_THAT(failure([] {
-                read_image("test_image.%04d.pgm", {}, {7, 10});
-              }),
+  const auto failure_of_slices = [](const std::string &name, int first, int last) {
+    return failure_of(name, RawLayout(), SliceRange{first, last});
+  };
+  EXPECT_THAT(failure_of_slices("test_image.%04d.pgm", 7, 10),
               HasSubstr("test_image.0007.pgm: cannot be read: No such file"));
-  EXPECT_THAT(failure([] {
-                read_image("test_image.%04d.pgm", {}, {8, 11});
-              }),
+  EXPECT_THAT(failure_of_slices("test_image.%04d.pgm", 8, 11),
               HasSubstr("0011.pgm: its size of 13 x 7"));
   for (const char *name : {"test_image.0008.pgm", "test_image.%s.pgm", "a%d%d", "a%", "a%000009d"})
-    EXPECT_THAT(failure([=] {
-                  read_image(name, {}, {8, 10});
-                }),
-                HasSubstr("needs one %d"))
-        << name;
+    EXPECT_THAT(failure_of_slices(name, 8, 10), HasSubstr("needs one %d")) << name;
   expect_values(read_image("test_image.0008.pgm"), Pixels(5, 4, 1, odd), "one");
 }
 
@@ -292,14 +281,8 @@ TEST(Reader, BadFiles)
   EXPECT_THAT(failure("abc", raw_layout(one, ImageKind::UINT16)), HasSubstr("needs 4 bytes"));
   EXPECT_THAT(failure("abc", raw_layout(one, ImageKind::UINT8, false, 9)),
               HasSubstr("has only 3 bytes"));
-  EXPECT_THAT(failure([] {
-                read_image("no.such.file");
-              }),
-              HasSubstr("No such file"));
-  EXPECT_THAT(failure([] {
-                read_image(".");
-              }),
-              HasSubstr("is no file"));
+  EXPECT_THAT(failure_of("no.such.file"), HasSubstr("No such file"));
+  EXPECT_THAT(failure_of("."), HasSubstr("is no file"));
 }
 
 TEST(Reader, BadPngFiles)
@@ -322,8 +305,6 @@ TEST(Reader, BadPngFiles)
                       png_chunk("IDAT", zlib_stored("abc")) + png_chunk("IEND", "")),
               HasSubstr("bytes at least"));
 }
-
-// ---------------------------------------------------------------- surfaces
 
 // integral of the same by points
 TEST(LevelSet, ShareOfACube)
@@ -409,5 +390,3 @@ TEST(LevelSet, SmoothedValuesGoAroundAnImage)
     }
   }
 }
-
-}    // namespace

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -12,11 +12,9 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A cell full of points of one material. */
-std::string cell(int dim, const std::string &units, const std::string &material,
-                 const std::string &more = "", const char *edges = "0 4 0 3 0 2")
+static std::string cell(int dim, const std::string &units, const std::string &material,
+                        const std::string &more = "", const char *edges = "0 4 0 3 0 2")
 {
   return box(dim, units, "p p p", edges, 1, 0.3) + "fix grid all mpm 1.0 frame total " + more +
       "\ncreate_points 1 box ppc 2\nfix m all mpm/material " + material + "\n";
@@ -24,24 +22,22 @@ std::string cell(int dim, const std::string &units, const std::string &material,
 
 enum { XX, YY, ZZ, XY, XZ, YZ };
 
-/** Entry of the vector of fix mpm/deform with the ID cell: deformation gradient, true, and nominal stress. */
-double mean_F(Scene &run, int part)
+/** Entry of the vector of the fix cell: deformation gradient, true, and nominal stress. */
+static double mean_F(Scene &run, int part)
 {
   return run.fix("cell")->compute_vector(part);
 }
-double mean_stress(Scene &run, int part)
+static double mean_stress(Scene &run, int part)
 {
   return run.fix("cell")->compute_vector(6 + part);
 }
-double mean_nominal(Scene &run, int part)
+static double mean_nominal(Scene &run, int part)
 {
   return run.fix("cell")->compute_vector(12 + part);
 }
 
-}    // namespace
-
-// In a cell of one material all points have the mean deformation, and the mean stress is that of the law along the same path:
-// large strain of an elastic and of a plastic solid, in all components at once
+// In a cell of one material all points have the mean deformation, and the mean stress is that of
+// the law along the same path: an elastic and a plastic solid, all components
 struct Homogeneous {
   int dim;
   const char *options, *material;
@@ -50,17 +46,17 @@ struct Homogeneous {
     *out << h.dim << "d " << h.options << " " << h.material;
   }
 };
-PARAMETER_TEST(Law, IsThatOfTheMaterial, Homogeneous,
-               Values(Homogeneous{3, "", "density 1.0 neohookean 100 0.3"},
-                      Homogeneous{2, "", "density 1.0 neohookean 100 0.3"},
-                      Homogeneous{3, "transfer flip 0.9 shape linear",
-                                  "density 1.0 eos linear 100 strength j2 40 0.5"},
-                      Homogeneous{2, "scheme musl shape cubic",
-                                  "density 1.0 eos linear 100 strength j2 40 0.5"},
-                      Homogeneous{2, "locking fbar", "density 1.0 neohookean 100 0.49"},
-                      Homogeneous{3, "", "density 1.0 eos tait 50 7 viscosity newtonian 3.0"}))
+SERIAL_PARAMETER_TEST(Law, IsThatOfTheMaterial, Homogeneous,
+                      Values(Homogeneous{3, "", "density 1.0 neohookean 100 0.3"},
+                             Homogeneous{2, "", "density 1.0 neohookean 100 0.3"},
+                             Homogeneous{3, "transfer flip 0.9 shape linear",
+                                         "density 1.0 eos linear 100 strength j2 40 0.5"},
+                             Homogeneous{2, "scheme musl shape cubic",
+                                         "density 1.0 eos linear 100 strength j2 40 0.5"},
+                             Homogeneous{2, "locking fbar", "density 1.0 neohookean 100 0.49"},
+                             Homogeneous{3, "",
+                                         "density 1.0 eos tait 50 7 viscosity newtonian 3.0"}))
 {
-  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
   const auto &h = GetParam();
   const double dt = 0.01;
   const int steps = 60;
@@ -121,7 +117,7 @@ PARAMETER_TEST(Law, IsThatOfTheMaterial, Homogeneous,
   EXPECT_LT(std::fabs(measured("integration without laws over work", (e[9] - e[13]) / e[6])), 1e-3);
 }
 
-// uniaxial stress of a neo-Hookean solid (benchmark S1, following traction), in tension and compression
+// uniaxial stress of a neo-Hookean solid (benchmark S1), in tension and compression
 SERIAL_TEST(Stress, NeoHookeanBar)
 {
   for (const auto &[stress, stretch] :
@@ -157,9 +153,8 @@ SERIAL_TEST(Stress, FollowsAPath)
   EXPECT_NEAR(measured("contraction", (mean_F(run, YY) - 1.0) / -1e-5 * 3.0), 1.0, 0.01);
 }
 
-namespace {
-/** Layers across x, half of each of two materials (Young's moduli 1 and 10, Poisson numbers 0.25 and 0.4); n cells in a period. */
-std::string laminate(int n, const std::string &options)
+/** Layers across x of two materials (moduli 1 and 10, Poisson numbers 0.25 and 0.4); n cells. */
+static std::string laminate(int n, const std::string &options)
 {
   const double h = 8.0 / n;
   return plane("lj", "p p", strprintf("0 8 0 %.17g", 2.0 * h), 2, 0.3 * h) +
@@ -192,7 +187,6 @@ struct Backus {
     C66 = 1.0 / one_G;
   }
 };
-}    // namespace
 
 // layers of two solids: all stiffnesses are exact where cells are of one of them
 SERIAL_TEST(Laminate, StiffnessIsExact)
@@ -214,7 +208,7 @@ SERIAL_TEST(Laminate, StiffnessIsExact)
     for (int k = 0; k < 2; k++)
       EXPECT_NEAR(measured(c.load, stiffness(8, "shape linear", k)), c.stiffness[k], 1e-6) << k;
     if (strcmp(c.load, "y") == 0) continue;    // strain is the same everywhere
-    // functions that are wider than a cell see a layer between the two, whose width is a share of a cell
+    // functions that are wider than a cell see a layer between the two, a share of a cell wide
     const double coarse = stiffness(8, "", 0) / c.stiffness[0] - 1.0,
                  fine = stiffness(16, "", 0) / c.stiffness[0] - 1.0;
     measured("error with 8 cells in a period", coarse);
@@ -236,7 +230,7 @@ SERIAL_TEST(Laminate, Compliance)
   EXPECT_NEAR(measured("shear", mean_F(run, XY) / s / (0.5 / C.C66)), 1.0, 1e-4);
 }
 
-// a plate with holes is pulled until it yields: the ledger knows the work of the mean motion, and the energy of points is that
+// a plate with holes is pulled until it yields: the ledger knows the work of the mean motion
 SERIAL_TEST(Cell, WorkAndLedger)
 {
   Scene run(plane("metal", "p p", "0 10 0 8", 1, 0.3) +
@@ -282,7 +276,7 @@ TEST(Cell, RanksAndRestart)
   }
 }
 
-// a cell that has yielded is unloaded with fix_modify: what remains is the strain without that of the stress, and what the sides have got
+// a cell that has yielded is unloaded with fix_modify: plastic strain remains
 SERIAL_TEST(Cell, Unloads)
 {
   Scene run(cell(3, "lj", "density 1 eos linear 100 strength j2 40 0.5") +

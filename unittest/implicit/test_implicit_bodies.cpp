@@ -1,45 +1,56 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi input
 // mpi: 1 4
 
-// Bodies that are fields of their own and touch by fix mpm/contact, in the implicit steps of fix mpm/implicit.
+// Bodies in fields of their own that touch by fix mpm/contact, in steps of fix mpm/implicit.
 
-#include "mpm_lammps.h"
+#include "implicit/implicit_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
+/** Two bodies in fields F1 (low) and F2 (up), of rubber, the lower one stiffer. */
+static std::string two_bodies_in(const std::string &low, const std::string &up,
+                                 const std::string &grid = "0.1",
+                                 const std::string &low_density = "1000")
+{
+  return fields({{"low", "block " + low}, {"up", "block " + up}}, grid) +
+      "fix ma up mpm/material density 1000 neohookean 1e6 0.3\nfix mb low mpm/material density " +
+      low_density + " neohookean 3e6 0.3\n";
+}
 
-/** Two blocks of linear elastic material on each other in a box of 0.8 by 1, the upper one with E = 1 MPa, the lower one with another; the interface is at this height, and
- *  rises by this slope. */
-std::string blocks(const std::string &contact, double height, double slope, double E, double nu,
-                   const std::string &box = "0 0.8 0 1", const std::string &implicit = "static")
+/** Two blocks of linear elastic material on each other in a box of 0.8 by 1, the upper one with E =
+ *  1 MPa, the lower one with another; the interface is at this height, and rises by this slope. */
+static std::string blocks(const std::string &contact, double height, double slope, double E,
+                          double nu, const std::string &box = "0 0.8 0 1",
+                          const std::string &implicit = "static")
 {
   return plane("si", "f f", box, 2, 0.02) + "region body block 0 0.8 0 1 INF INF\n" +
       strprintf("region below plane 0.4 %.17g 0 %.17g -1 0\n", height, slope) +
       strprintf("region above plane 0.4 %.17g 0 %.17g 1 0\n", height, -slope) +
-      "region low intersect 2 body below\nregion up intersect 2 body above\n"
-      "group up type 2\ngroup low type 1\n"
-      "fix a up mpm 0.1\nfix b low mpm 0.1\n"
-      "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix "
-      "a\n"
-      "group up type 2\ngroup low type 1\n" +
+      fields({{"low", "intersect 2 body below"}, {"up", "intersect 2 body above"}}, "0.1") +
       strprintf("fix ma up mpm/material density 1000 linear 1e6 %g\n", nu) +
       strprintf("fix mb low mpm/material density 1000 linear %g %g\n", E, nu) +
-      "fix touch all mpm/contact a b " + contact + "\nfix solve all mpm/implicit " + implicit +
+      "fix touch all mpm/contact F2 F1 " + contact + "\nfix solve all mpm/implicit " + implicit +
       "\ntimestep 1.0\n";
 }
+/** Smooth walls below, above, and at the left; the lid, and a right one if it moves, push. */
+static std::string walls(const char *right = "")
+{
+  return "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n" +
+      std::string(*right ? "fix right all mpm/boundary xhi slip velocity " : "") + right +
+      "\nfix lid all mpm/boundary yhi slip velocity 0 -0.01 0\n";
+}
+static const char *const PUSHED = "-0.008 0 0";
 
 /** Largest difference of the stress of points of the mean, along this axis, over its mean. */
-double scatter(Scene &run, int axis)
+static double scatter(Scene &run, int axis)
 {
   double mean = 0.0, most = 0.0;
   for (int pass = 0; pass < 2; pass++)
     for (int i = 0; i < run.n(); i++) {
-      double stress[6];
-      run.points().cauchy(i, stress);
+      const auto stress = run.cauchy(i);
       if (pass)
         most = std::max(most, std::fabs(stress[axis] - mean) / std::fabs(mean));
       else
@@ -48,22 +59,31 @@ double scatter(Scene &run, int axis)
   return most;
 }
 
-double touch(Scene &run, int column)
+/** Force of the contact along x, y, or z, or (3) on the nodes that touch. */
+static double touch(Scene &run, int column)
 {
   return run.fix("touch")->compute_array(0, column);
 }
 
-}    // namespace
+/** Mean of a component of positions or velocities of the bodies of a type. */
+static double mean(Scene &run, double **of, int type, int d)
+{
+  double sum = 0.0;
+  int n = 0;
+  for (int i = 0; i < run.n(); i++)
+    if (run.lmp->atom->type[i] == type) {
+      sum += of[i][d];
+      n++;
+    }
+  return sum / n;
+}
 
-// blocks that are pressed together have uniform stress, wherever the interface is between nodes, with free sides
+// blocks that are pressed together have uniform stress, wherever the interface is between nodes
 SERIAL_TEST(Blocks, ArePressed)
 {
   for (const char *contact : {"", "law stick", "law coulomb 0.3", "gap no"})
     for (const double height : {0.5, 0.55}) {
-      Scene run(blocks(contact, height, 0.0, 1e6, 0.3, "0 1 0 1") +
-                "fix left all mpm/boundary xlo slip\n"
-                "fix floor all mpm/boundary ylo slip\n"
-                "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\nrun 1\n");
+      Scene run(blocks(contact, height, 0.0, 1e6, 0.3, "0 1 0 1") + walls() + "run 1\n");
       EXPECT_LT(
           measured(strprintf("%s at %g: scatter of stress", contact, height), scatter(run, 1)),
           1e-5);
@@ -99,17 +119,15 @@ SERIAL_TEST(Blocks, OfTwoMaterials)
   }
 }
 
-// an interface that is inclined, under the same pressure from all sides: the stress is uniform and the force is that on a plane one, though points in a
-// lattice make steps along it
+// an interface that is inclined, under the same pressure from all sides: the stress is uniform and
+// the force is that on a plane one, though points in a lattice make steps along it
 SERIAL_TEST(Blocks, WithAnInclinedInterface)
 {
   for (const char *contact : {"", "law stick"}) {
     double force[2];
     for (const double slope : {0.0, 0.4}) {
-      Scene run(blocks(contact, slope == 0.0 ? 0.5 : 0.51, slope, 1e6, 0.2) +
-                "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n"
-                "fix right all mpm/boundary xhi slip velocity -0.008 0 0\n"
-                "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\nrun 1\n");
+      Scene run(blocks(contact, slope == 0.0 ? 0.5 : 0.51, slope, 1e6, 0.2) + walls(PUSHED) +
+                "run 1\n");
       force[slope > 0.0] = touch(run, 1);
       for (const int axis : {0, 1})
         EXPECT_LT(measured(strprintf("%s slope %g: scatter of stress", contact, slope),
@@ -127,9 +145,7 @@ SERIAL_TEST(Blocks, StickOnAnySlope)
     double force[2];
     for (const int friction : {0, 1}) {
       Scene run(blocks(friction ? "law coulomb 2.0" : "law stick", 0.51, slope, 1e6, 0.2) +
-                "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n"
-                "fix right all mpm/boundary xhi slip velocity -0.008 0 0\n"
-                "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\nrun 1\n");
+                walls(PUSHED) + "run 1\n");
       force[friction] = touch(run, 1);
     }
     EXPECT_NEAR(
@@ -160,22 +176,16 @@ SERIAL_TEST(Blocks, ComeTogether)
               strprintf("displace_atoms up move 0 %.17g 0\n", gap * 0.1) +
               "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
               "fix load up addforce 0 -200 0\nrun 1\n");
-    double low = 0.0, up = 0.0;
-    int nlow = 0, nup = 0;
-    for (int i = 0; i < run.n(); i++) {
-      const bool is_low = run.lmp->atom->type[i] == 1;
-      (is_low ? low : up) += run.x()[i][1];
-      (is_low ? nlow : nup)++;
-    }
-    const double force = -200.0 * nup;
+    const double force = -200.0 * run.evaluate("count(up)");
     EXPECT_NEAR(touch(run, 1) / force, 1.0, 1e-6);
     EXPECT_NEAR(run.fix("floor")->compute_vector(1) / force, 1.0, 1e-6);
     // the lower block bears all of it, the upper one its share
     const double s = force / 0.8e6, exact_low = 0.25 * (1.0 + s),
                  exact_up = 0.5 * (1.0 + s) + 0.25 + s / 6.0;
-    EXPECT_NEAR(measured("lower block, in node spacings", (low / nlow - exact_low) / 0.1), 0.0,
-                0.02);
-    EXPECT_NEAR(measured("upper block", (up / nup - exact_up) / 0.1), 0.0, 0.03);
+    EXPECT_NEAR(
+        measured("lower block, in node spacings", (mean(run, run.x(), 1, 1) - exact_low) / 0.1),
+        0.0, 0.02);
+    EXPECT_NEAR(measured("upper block", (mean(run, run.x(), 2, 1) - exact_up) / 0.1), 0.0, 0.03);
   }
 }
 
@@ -184,15 +194,9 @@ SERIAL_TEST(Block, SticksOnAnotherOne)
 {
   const auto scene = [](double along, const std::string &implicit, const std::string &law) {
     return plane("si", "f f", "0 1.5 0 0.8", 2, 0.02) +
-        "group up type 2\ngroup low type 1\nfix a up mpm 0.1\nfix b low mpm 0.1\n"
-        "region low block 0 1.5 0 0.25 INF INF\nregion up block 0.3 1.1 0.25 0.65 INF INF\n"
-        "create_points 1 region low spacing 0.05 fix b\ncreate_points 2 region up spacing 0.05 fix "
-        "a\n"
-        "group up type 2\ngroup low type 1\n"
-        "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
-        "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n"
-        "fix touch all mpm/contact b a " +
-        law + "\nfix floor all mpm/boundary ylo stick\n" +
+        replaced(two_bodies_in("0 1.5 0 0.25 INF INF", "0.3 1.1 0.25 0.65 INF INF"), "ppc 2",
+                 "spacing 0.05") +
+        "fix touch all mpm/contact F1 F2 " + law + "\nfix floor all mpm/boundary ylo stick\n" +
         strprintf("fix g all gravity 10 vector %g -1 0\n", along) + "fix solve all mpm/implicit " +
         implicit + "\ntimestep 1.0\n";
   };
@@ -211,31 +215,21 @@ SERIAL_TEST(Block, SticksOnAnotherOne)
   }
 }
 
-namespace {
-
 /** A block on a base in 3d, which begins to slide down a slope; place: of the block along x. */
-std::string block_on_base(const char *transfer, double mu, double slope, const std::string &solve,
-                          double place = 0.3)
+static std::string block_on_base(const std::string &transfer, double mu, double slope,
+                                 const std::string &solve, double place = 0.3)
 {
-  return "units si\nboundary f f f\natom_style mpm\nregion box block 0 2 0 1 0 1.2\n"
-         "create_box 2 box\nneighbor 0.02 bin\n"
-         "region low block 0.1 1.7 0.1 0.9 0 0.2\nregion up block 0.3 1.1 0.2 0.8 0.2 0.8\n"
-         "group up type 2\ngroup low type 1\n" +
-      strprintf("fix a up mpm 0.1%s\nfix b low mpm 0.1%s\n", transfer, transfer) +
-      "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix a\n"
-      "group up type 2\ngroup low type 1\n" +
+  return space("si", "f f f", "0 2 0 1 0 1.2", 2, 0.02) +
+      two_bodies_in("0.1 1.7 0.1 0.9 0 0.2", "0.3 1.1 0.2 0.8 0.2 0.8", "0.1" + transfer) +
       strprintf("displace_atoms up move %.17g 0 0 units box\n", place - 0.3) +
-      "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
-      "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n" +
-      strprintf("fix touch all mpm/contact b a law coulomb %g\n", mu) +
+      strprintf("fix touch all mpm/contact F1 F2 law coulomb %g\n", mu) +
       "fix floor all mpm/boundary zlo stick\n" +
       strprintf("fix g all gravity 10 vector %g 0 -1\n", slope) + "fix solve all mpm/implicit " +
       solve + "\ntimestep 0.01\n";
 }
 
-}    // namespace
-
-// a block that slides on another one in 3d: iterations find the direction of friction of each line of nodes, also in short steps, and what sticks, slides, and parts
+// a block that slides on another one in 3d: iterations find the direction of friction of each line
+// of nodes, also in short steps, and what sticks, slides, and parts
 SERIAL_TEST(Block, SlidesIn3d)
 {
   struct Case {
@@ -251,8 +245,7 @@ SERIAL_TEST(Block, SlidesIn3d)
     Scene run(block_on_base(c.transfer, c.mu, c.slope, strprintf("%s parts 1", c.scheme), c.place) +
               "run 3\n");
     const std::string name = strprintf("%s, friction %g: ", c.scheme, c.mu);
-    EXPECT_LT(measured(name + "iterations in three steps", run.fix("solve")->compute_vector(5)),
-              c.iterations);
+    EXPECT_LT(measured(name + "iterations in three steps", solved(run, 5)), c.iterations);
     // the front of the block bears most where friction is large, and its rear sticks or parts
     if (c.mu < 0.2) {
       EXPECT_NEAR(measured(name + "of what slides", touch(run, 0) / -touch(run, 2)), c.mu,
@@ -262,7 +255,7 @@ SERIAL_TEST(Block, SlidesIn3d)
   }
 }
 
-// with law stick, lines of nodes would be pulled while they stick, and go into the other body when they are let go: they slip
+// with law stick, nodes would be pulled while they stick, and go into the other body: they slip
 SERIAL_TEST(Block, SticksIn3d)
 {
   for (const char *scheme : first_of(1, {"static", "euler"})) {
@@ -277,8 +270,7 @@ SERIAL_TEST(Block, SticksIn3d)
     EXPECT_NE(text.find(words), std::string::npos);
     EXPECT_EQ(text.find(words), text.rfind(words));    // once
     const std::string name = strprintf("%s: ", scheme);
-    EXPECT_LT(measured(name + "iterations in three steps", run.fix("solve")->compute_vector(5)),
-              60.0);
+    EXPECT_LT(measured(name + "iterations in three steps", solved(run, 5)), 60.0);
     if (*scheme == 'e') continue;    // still in motion
     // gravity of 10 m/s^2 is inclined by 1:2
     const double weight = 0.8 * 0.6 * 0.6 * 1000.0 * 10.0;
@@ -288,46 +280,27 @@ SERIAL_TEST(Block, SticksIn3d)
   }
 }
 
-namespace {
-
-/** How much the upper one of two bodies settles under the weight of both, over that of one body made of both. */
-double settlement(const std::string &low, const std::string &up, double h)
+/** How much the upper of two bodies settles under their weight, over that of one body of both. */
+static double settlement(const std::string &low, const std::string &up, double h)
 {
   double down[2];
   for (const int contact : {0, 1}) {
-    Scene run("units si\nboundary f f f\natom_style mpm\nregion box block 0 1.8 0 1.2 0 0.9\n" +
-              strprintf("create_box 2 box\nneighbor %g bin\n", 0.2 * h) + "region low block " +
-              low + "\nregion up block " + up + "\ngroup up type 2\ngroup low type 1\n" +
-              (contact ? strprintf("fix a up mpm %g\nfix b low mpm %g\n", h, h)
-                       : strprintf("fix b all mpm %g\n", h)) +
-              "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix " +
-              (contact ? "a" : "b") + "\ngroup up type 2\ngroup low type 1\n" +
-              "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
-              "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n" +
-              (contact ? "fix touch all mpm/contact b a law stick\n" : "") +
+    const std::string two = two_bodies_in(low, up, strprintf("%g", h)),
+                      one = replaced(replaced(replaced(two, "fix F1 low mpm", "fix F1 all mpm"),
+                                              strprintf("fix F2 up mpm %g\n", h), ""),
+                                     "fix F2", "fix F1");
+    Scene run(space("si", "f f f", "0 1.8 0 1.2 0 0.9", 2, 0.2 * h) + (contact ? two : one) +
+              (contact ? "fix touch all mpm/contact F1 F2 law stick\n" : "") +
               "fix floor all mpm/boundary zlo stick\nfix g all gravity 10 vector 0 0 -1\n"
-              "fix solve all mpm/implicit static parts 1\ntimestep 1\n");
-    const auto mean = [&]() {
-      double sum = 0.0;
-      int n = 0;
-      for (int i = 0; i < run.n(); i++)
-        if (run.lmp->atom->type[i] == 2) {
-          sum += run.x()[i][2];
-          n++;
-        }
-      return sum / n;
-    };
-    run.commands("run 0\n");
-    const double before = mean();
+              "fix solve all mpm/implicit static parts 1\ntimestep 1\nrun 0\n");
+    const double before = mean(run, run.x(), 2, 2);
     run.commands("run 1\n");
-    down[contact] = before - mean();
+    down[contact] = before - mean(run, run.x(), 2, 2);
   }
   return down[1] / down[0];
 }
 
-}    // namespace
-
-// bodies bear each other up to their edges: a block on a wider base, and bars of 4 by 4 cells that cross
+// bodies bear each other up to their edges: a block on a wider base, and bars that cross
 SERIAL_TEST(Block, BearsUpToItsEdges)
 {
   const std::string base = "0.1 1.7 0.1 1.1 0 0.2", block = "0.3 1.1 0.3 0.9 0.2 0.8";
@@ -342,21 +315,15 @@ SERIAL_TEST(Block, BearsUpToItsEdgesOnAFineLattice)
   EXPECT_NEAR(measured("block of 12 cells", ratio), 1.0, 0.025);
 }
 
-// the same without inertia: a wall holds a block, under which the base is drawn away. What bears the block is its weight, and what holds it is friction, but for
-// lines at the wall, which hold it there
+// the same without inertia: a wall holds a block, under which the base is drawn away. Friction
+// holds the block, but for lines at the wall
 SERIAL_TEST(Block, IsHeldWhileItsBaseSlidesIn3d)
 {
   LONG_CASE();
   for (const double mu : {0.1, 0.6, 1.5}) {
-    Scene run("units si\nboundary f f f\natom_style mpm\nregion box block 0 1.2 0 1 0 1\n"
-              "create_box 2 box\nneighbor 0.02 bin\n"
-              "region low block 0.1 1.1 0.1 0.9 0 0.2\nregion up block 0 0.4 0.3 0.7 0.2 0.6\n"
-              "group up type 2\ngroup low type 1\nfix a up mpm 0.1\nfix b low mpm 0.1\n"
-              "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix a\n"
-              "group up type 2\ngroup low type 1\n"
-              "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
-              "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n" +
-              strprintf("fix touch all mpm/contact b a law coulomb %g\n", mu) +
+    Scene run(space("si", "f f f", "0 1.2 0 1 0 1", 2, 0.02) +
+              two_bodies_in("0.1 1.1 0.1 0.9 0 0.2", "0 0.4 0.3 0.7 0.2 0.6") +
+              strprintf("fix touch all mpm/contact F1 F2 law coulomb %g\n", mu) +
               "fix floor all mpm/boundary zlo stick velocity -0.02 0 0\n"
               "fix wall all mpm/boundary xlo slip\nfix g all gravity 10 vector 0 0 -1\n"
               "fix solve all mpm/implicit static parts 1\ntimestep 1\nrun 1\n");
@@ -371,45 +338,28 @@ SERIAL_TEST(Block, IsHeldWhileItsBaseSlidesIn3d)
 SERIAL_TEST(Block, SlidesToRest)
 {
   for (const char *scheme : first_of(1, {"newmark", "euler", "midpoint"})) {
-    const std::string grid = *scheme == 'e' ? "fix %s mpm 0.1\n"
-                                            : "fix %s mpm 0.1 transfer flip 1.0\n";
     const double mu = 0.3, g = 10.0, v = 0.6, mass = 0.8 * 0.4 * 1000.0;
-    Scene run(plane("si", "f f", "0 2 0 0.9", 2, 0.02) + "group up type 2\ngroup low type 1\n" +
-              strprintf(grid.c_str(), "a up") + strprintf(grid.c_str(), "b low") +
-              "region low block 0 2 0 0.2 INF INF\nregion up block 0.3 1.1 0.2 0.6 INF INF\n"
-              "create_points 1 region low ppc 2 fix b\ncreate_points 2 region up ppc 2 fix a\n"
-              "group up type 2\ngroup low type 1\n"
-              "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
-              "fix mb low mpm/material density 1000 neohookean 3e6 0.3\n" +
-              strprintf("fix touch all mpm/contact b a law coulomb %g\n", mu) +
-              "fix floor all mpm/boundary ylo stick\n" +
+    const std::string contact = strprintf("fix touch all mpm/contact F1 F2 law coulomb %g\n", mu);
+    Scene run(plane("si", "f f", "0 2 0 0.9", 2, 0.02) +
+              two_bodies_in("0 2 0 0.2 INF INF", "0.3 1.1 0.2 0.6 INF INF",
+                            *scheme == 'e' ? "0.1" : "0.1 transfer flip 1.0") +
+              contact + "fix floor all mpm/boundary ylo stick\n" +
               strprintf("fix g all gravity %g vector 0 -1 0\n", g) +
               // its weight is borne first: else, gravity works on what sinks, and it swings
               "fix solve all mpm/implicit euler\ntimestep 0.05\nrun 20\nunfix solve\n"
               "unfix touch\n" +
-              strprintf("fix touch all mpm/contact b a law coulomb %g\n", mu) +
-              strprintf("velocity all set 0 0 0\nvelocity up set %g 0 0\n", v) +
+              contact + strprintf("velocity all set 0 0 0\nvelocity up set %g 0 0\n", v) +
               "fix solve all mpm/implicit " + scheme + "\ntimestep 2e-3\n");
-    const auto mean = [&](double **of) {
-      double sum = 0.0;
-      int n = 0;
-      for (int i = 0; i < run.n(); i++)
-        if (run.lmp->atom->type[i] == 2) {
-          sum += of[i][0];
-          n++;
-        }
-      return sum / n;
-    };
     run.commands("run 0\n");
-    const double begin = mean(run.x());
+    const double begin = mean(run, run.x(), 2, 0);
     run.commands("run 200\n");
     EXPECT_NEAR(measured(strprintf("%s: way over that of theory", scheme),
-                         (mean(run.x()) - begin) / (v * v / (2.0 * mu * g))),
+                         (mean(run, run.x(), 2, 0) - begin) / (v * v / (2.0 * mu * g))),
                 1.0, 0.03);
     EXPECT_NEAR(measured("work of friction over the energy",
                          run.fix("touch")->compute_scalar() / (0.5 * mass * v * v)),
                 -1.0, 0.04);
-    EXPECT_LT(std::fabs(measured("velocity in the end", mean(run.v()))), 0.06 * v);
+    EXPECT_LT(std::fabs(measured("velocity in the end", mean(run, run.v(), 2, 0))), 0.06 * v);
   }
 }
 
@@ -418,22 +368,19 @@ SERIAL_TEST(Rings, PressOnEachOther)
 {
   double error[2];
   for (const int fine : first_of(1, {0, 1})) {
-    Scene run(plane("si", "f f", "0 2.5 0 2.5", 2, 0.03) +
-              "region outer cylinder z 0 0 2 INF INF\nregion mid cylinder z 0 0 1.5 INF INF\n"
-              "region beyond cylinder z 0 0 1.5 INF INF side out\n"
-              "region bore cylinder z 0 0 1 INF INF side out\n"
-              "region ring1 intersect 2 mid bore\nregion ring2 intersect 2 outer beyond\n"
-              "group one type 1\ngroup two type 2\n" +
-              strprintf("fix a one mpm %g\nfix b two mpm %g\n", fine ? 0.0625 : 0.125,
-                        fine ? 0.0625 : 0.125) +
-              "create_points 1 region ring1 ppc 2 outside ignore fix a cut yes\n"
-              "create_points 2 region ring2 ppc 2 outside ignore fix b cut yes\n"
-              "group one type 1\ngroup two type 2\n"
-              "fix ma one mpm/material density 1000 linear 1e6 0.3\n"
-              "fix mb two mpm/material density 1000 linear 4e6 0.3\n"
-              "fix touch all mpm/contact a b\nfix walls all mpm/boundary xlo ylo slip\n"
-              "fix gas one mpm/traction region bore pressure 1e4 area $(PI/2)\n"
-              "fix solve all mpm/implicit static\ntimestep 1.0\nrun 1\n");
+    Scene run(
+        plane("si", "f f", "0 2.5 0 2.5", 2, 0.03) +
+        "region outer cylinder z 0 0 2 INF INF\nregion mid cylinder z 0 0 1.5 INF INF\n"
+        "region beyond cylinder z 0 0 1.5 INF INF side out\n"
+        "region bore cylinder z 0 0 1 INF INF side out\n" +
+        replaced(fields({{"one", "intersect 2 mid bore"}, {"two", "intersect 2 outer beyond"}},
+                        fine ? "0.0625" : "0.125"),
+                 "ppc 2", "ppc 2 outside ignore cut yes") +
+        "fix ma one mpm/material density 1000 linear 1e6 0.3\n"
+        "fix mb two mpm/material density 1000 linear 4e6 0.3\n"
+        "fix touch all mpm/contact F1 F2\nfix walls all mpm/boundary xlo ylo slip\n"
+        "fix gas one mpm/traction region bore pressure 1e4 area $(PI/2)\n"
+        "fix solve all mpm/implicit static\ntimestep 1.0\nrun 1\n");
     const double exact = 5045.045;    // thick tubes with the same displacement at r = 1.5
     for (const int d : {0, 1}) {
       error[fine] = measured("pressure between the rings", touch(run, d) / 1.5 / exact) - 1.0;
@@ -442,60 +389,46 @@ SERIAL_TEST(Rings, PressOnEachOther)
   }
 }
 
-// two free bodies that collide
+/** Two free bodies that collide. */
+static std::string colliding(const std::string &implicit, const std::string &grid = "0.1")
+{
+  return plane("si", "p p", "0 3 0 1", 2, 0.02) +
+      replaced(two_bodies_in("0.5 1.2 0.2 0.8 INF INF", "1.23 1.8 0.1 0.6 INF INF", grid, "2000"),
+               "ppc 2", "spacing 0.05") +
+      "fix touch all mpm/contact F2 F1 law coulomb 0.2\nvelocity low set 1.0 0.3 0\n"
+      "fix solve all mpm/implicit " +
+      implicit + "\ntimestep 2e-3\n";
+}
+
 SERIAL_TEST(Bodies, KeepTheirMomentum)
 {
-  Scene run(plane("si", "p p", "0 3 0 1", 2, 0.02) +
-            "group up type 2\ngroup low type 1\nfix a up mpm 0.1\nfix b low mpm 0.1\n"
-            "region low block 0.5 1.2 0.2 0.8 INF INF\nregion up block 1.23 1.8 0.1 0.6 INF INF\n"
-            "create_points 1 region low spacing 0.05 fix b\ncreate_points 2 region up spacing 0.05 "
-            "fix a\n"
-            "group up type 2\ngroup low type 1\n"
-            "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
-            "fix mb low mpm/material density 2000 neohookean 3e6 0.3\n"
-            "fix touch all mpm/contact a b law coulomb 0.2\n"
-            "velocity low set 1.0 0.3 0\n"
-            "fix solve all mpm/implicit euler tolerance 1e-12\ntimestep 2e-3\n");
-  const auto sums = [&]() {
-    std::array<double, 3> s = {0.0, 0.0, 0.0};
-    for (int i = 0; i < run.n(); i++) {
-      const double *v = run.v()[i], m = run.mass()[i];
-      s[0] += m * v[0];
-      s[1] += m * v[1];
-      s[2] += 0.5 * m * (v[0] * v[0] + v[1] * v[1]);
-    }
-    return s;
-  };
-  const auto start = sums();
-  double energy = start[2], push = 0.0;
-  run.commands("compute stored all mpm/energy\nthermo_style custom step c_stored[1] c_stored[2]\n");
+  Scene run(colliding("euler tolerance 1e-12"));
+  const auto start = run.sums();
+  double energy = start.kinetic, push = 0.0;
   for (int k = 0; k < 15; k++) {
     run.commands("run 2\n");
-    const auto now = sums();
-    EXPECT_NEAR(now[0] / start[0], 1.0, 1e-10);
-    EXPECT_NEAR(now[1] / start[1], 1.0, 1e-10);
-    EXPECT_LT(now[2], energy * (1.0 + 1e-6));
-    energy = std::max(now[2], 0.6 * start[2]);
+    const auto now = run.sums();
+    EXPECT_NEAR(now.p[0] / start.p[0], 1.0, 1e-10);
+    EXPECT_NEAR(now.p[1] / start.p[1], 1.0, 1e-10);
+    EXPECT_LT(now.kinetic, energy * (1.0 + 1e-6));
+    energy = std::max(now.kinetic, 0.6 * start.kinetic);
     push = std::max(push, touch(run, 3));
   }
   EXPECT_GT(push, 0.0);
-  EXPECT_LT(measured("kinetic energy over that of the start", sums()[2] / start[2]), 0.95);
+  EXPECT_LT(measured("kinetic energy over that of the start", run.sums().kinetic / start.kinetic),
+            0.95);
 }
 
-// two equal bars: while their waves run to their ends and back, they press on each other by rho c v A, and then have each other's velocity
+// two equal bars press on each other by rho c v A for two passages, then swap velocities
 SERIAL_TEST(Bars, Collide)
 {
   for (const char *scheme : {"newmark", "midpoint"}) {
     Scene run(plane("si", "f p", "-2 2.5 0 0.1", 2, 0.02) +
-              "region left block -1 0 INF INF INF INF\nregion right block 0.001 1 INF INF INF INF\n"
-              "group l type 1\ngroup r type 2\n"
-              "fix a l mpm 0.05 transfer flip 1.0\nfix b r mpm 0.05 transfer flip 1.0\n"
-              "create_points 1 region left ppc 2 fix a\ncreate_points 2 region right ppc 2 fix b\n"
-              "group l type 1\ngroup r type 2\n"
-              "fix ma l mpm/material density 1000 linear 1e6 0.0\n"
-              "fix mb r mpm/material density 1000 linear 1e6 0.0\n"
+              fields({{"l", "block -1 0 INF INF INF INF"}, {"r", "block 0.001 1 INF INF INF INF"}},
+                     "0.05 transfer flip 1.0") +
+              "fix m all mpm/material density 1000 linear 1e6 0.0\n"
               "velocity l set 0.5 0 0\nvelocity r set -0.5 0 0\n"
-              "fix touch all mpm/contact a b\ncompute e all mpm/energy\n"
+              "fix touch all mpm/contact F1 F2\ncompute e all mpm/energy\n"
               "thermo_style custom step c_e[1] c_e[2]\n"
               "fix solve all mpm/implicit " +
               std::string(scheme) + "\ntimestep 0.0015823\n");
@@ -506,9 +439,8 @@ SERIAL_TEST(Bars, Collide)
       const double now = touch(run, 0);
       impulse += 0.0015823 * now;
       if (k == 20) force = now;
-      auto *const energy = run.lmp->modify->get_compute_by_id("e");
-      energy->compute_vector();
-      most = std::max(most, energy->vector[0] + energy->vector[1]);
+      const double *const energy = run.compute_vector();
+      most = std::max(most, energy[0] + energy[1]);
     }
     for (int i = 0; i < run.n(); i++)
       v[run.lmp->atom->type[i] - 1] += run.mass()[i] * run.v()[i][0] / 100.0;
@@ -524,9 +456,7 @@ SERIAL_TEST(Bars, Collide)
 
 TEST(Blocks, OnRanks)
 {
-  OnRanks run(blocks("", 0.53, 0.1, 3e6, 0.3, "0 1 0 1", "static tolerance 1e-11") +
-                  "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n"
-                  "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\n",
+  OnRanks run(blocks("", 0.53, 0.1, 3e6, 0.3, "0 1 0 1", "static tolerance 1e-11") + walls(),
               "run 2\n");
   EXPECT_LT(measured("difference", run.difference()), 1e-7);
 }
@@ -541,56 +471,40 @@ TEST(Block, OnRanksIn3d)
 
 TEST(Blocks, Restart)
 {
-  const std::string fixes = "fix a up mpm 0.1\nfix b low mpm 0.1\n"
-                            "fix ma up mpm/material density 1000 linear 1e6 0.3\n"
-                            "fix mb low mpm/material density 1000 linear 3e6 0.3\n"
-                            "fix touch all mpm/contact a b \nfix solve all mpm/implicit static\n",
-                    walls =
-                        "fix left all mpm/boundary xlo slip\nfix floor all mpm/boundary ylo slip\n"
-                        "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\ntimestep 1.0\n";
-  Continued run(blocks("", 0.53, 0.0, 3e6, 0.3, "0 1 0 1") + walls, 1, fixes + walls, 2);
+  const auto scene = blocks("", 0.53, 0.0, 3e6, 0.3, "0 1 0 1") + walls();
+  Continued run(scene, 1, lines_again(scene), 2);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
 
 // in methods of second order, too, through an impact in which bodies slide along each other
 TEST(Bodies, RanksAndRestart)
 {
-  for (const char *scheme : {"newmark", "midpoint"}) {
-    const std::string fixes =
-        "fix a up mpm 0.1 transfer flip 1.0\nfix b low mpm 0.1 transfer flip 1.0\n"
-        "fix ma up mpm/material density 1000 neohookean 1e6 0.3\n"
-        "fix mb low mpm/material density 2000 neohookean 3e6 0.3\n"
-        "fix touch all mpm/contact a b law coulomb 0.2\nfix solve all mpm/implicit " +
-        std::string(scheme) + " tolerance 1e-11\ntimestep 2e-3\n";
-    const std::string scene = plane("si", "p p", "0 3 0 1", 2, 0.02) +
-        "group up type 2\ngroup low type 1\n" + fixes +
-        "region low block 0.5 1.2 0.2 0.8 INF INF\nregion up block 1.23 1.8 0.1 0.6 INF INF\n"
-        "create_points 1 region low spacing 0.05 fix b\n"
-        "create_points 2 region up spacing 0.05 fix a\n"
-        "group up type 2\ngroup low type 1\nvelocity low set 1.0 0.3 0\n";
-    Twins(scene, 20, "neighbor 0.02 bin\n" + fixes, 20, 1e-9);
+  for (const std::string scheme : {"newmark", "midpoint"}) {
+    const std::string scene = colliding(scheme + " tolerance 1e-11", "0.1 transfer flip 1.0");
+    Twins(scene, 20, lines_again(scene), 20, 1e-9);
   }
 }
 
 TEST(BadInput, IsRefused)
 {
-  const std::string walls = "fix floor all mpm/boundary ylo slip\n";
-  const auto scene = [](const std::string &contact, const std::string &implicit) {
-    return blocks(contact, 0.5, 0.0, 1e6, 0.3, "0 1 0 1", implicit);
+  struct Case {
+    const char *contact, *implicit, *walls, *message;
   };
-  expect_error(scene("law adhesive 1e3 1e3 1", "static") + walls + "run 0\n", "law adhesive");
-  expect_error(scene("law coulomb 0.2 0.3", "static") + walls + "run 0\n", "static friction");
-  expect_error(scene("normal volume", "static") + walls + "run 0\n", "remove normal");
-  expect_error(scene("", "newmark") + walls + "run 0\n", "use transfer flip 1.0");
-  expect_error(scene("", "alpha") + walls + "run 0\n", "use newmark or midpoint");
-  expect_error(scene("", "static solver multigrid") + walls + "run 0\n", "use solver blocks");
-  expect_error(scene("", "static slip 0.1") + walls + "run 0\n", "walls with friction");
-  expect_error(scene("law coulomb 0.2", "static slip 0.1") + walls + "run 0\n",
-               "walls with friction");
-  expect_error(scene("", "static") + "fix floor all mpm/boundary ylo separate\nrun 0\n",
-               "use stick or slip");
-  expect_error(scene("", "static") + "fix floor all mpm/boundary ylo slip friction 0.1\nrun 0\n",
-               "use stick or slip");
-  expect_error(scene("", "static") + "unfix touch\n" + walls + "run 0\n",
-               "name all of them in one fix mpm/contact");
+  const char *const floor = "fix floor all mpm/boundary ylo slip\n";
+  for (const auto &c :
+       {Case{"law adhesive 1e3 1e3 1", "static", floor, "law adhesive"},
+        Case{"law coulomb 0.2 0.3", "static", floor, "static friction"},
+        Case{"normal volume", "static", floor, "remove normal"},
+        Case{"", "newmark", floor, "use transfer flip 1.0"},
+        Case{"", "alpha", floor, "use newmark or midpoint"},
+        Case{"", "static solver multigrid", floor, "use solver blocks"},
+        Case{"", "static slip 0.1", floor, "walls with friction"},
+        Case{"law coulomb 0.2", "static slip 0.1", floor, "walls with friction"},
+        Case{"", "static", "fix floor all mpm/boundary ylo separate\n", "use stick or slip"},
+        Case{"", "static", "fix floor all mpm/boundary ylo slip friction 0.1\n",
+             "use stick or slip"},
+        Case{"", "static", "unfix touch\nfix floor all mpm/boundary ylo slip\n",
+             "name all of them in one fix mpm/contact"}})
+    expect_error(blocks(c.contact, 0.5, 0.0, 1e6, 0.3, "0 1 0 1", c.implicit) + c.walls + "run 0\n",
+                 c.message);
 }

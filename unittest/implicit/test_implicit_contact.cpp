@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi input
 // mpi: 1 4
@@ -10,11 +10,10 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
-/** A block of rubber, 1 m by 0.5 m, on a floor at its place along y, with its weight of 5000 N/m and a part of that along x. */
-std::string block(const std::string &floor, const std::string &options, double y, double along,
-                  const std::string &implicit)
+/** A block of rubber, 1 m by 0.5 m, on a floor at its place along y, with its weight of 5000 N/m
+ *  and a part of that along x. */
+static std::string block(const std::string &floor, const std::string &options, double y,
+                         double along, const std::string &implicit)
 {
   return plane("si", "f f", "-0.5 3 -0.25 1", 1, 0.01) +
       body(strprintf("block 0.5 1.5 %g %g INF INF", y, y + 0.5), "density 1000 neohookean 1e6 0.3",
@@ -25,8 +24,9 @@ std::string block(const std::string &floor, const std::string &options, double y
       implicit + "\ntimestep 1.0\n";
 }
 
-/** A block of rubber of 0.5 by 0.5 at this many node spacings above a floor or hill at its place along y: part of a scene. */
-std::string above(const std::string &floor, double gap, const std::string &options, double low)
+/** A block of rubber of 0.5 by 0.5 at this many node spacings above the floor or hill below it. */
+static std::string above(const std::string &floor, double gap, const std::string &options,
+                         double low)
 {
   const double h = 0.0625;
   return plane("si", "f f", strprintf("0 1 %.17g 1", floor[0] == 'y' ? low : low - 0.25), 1,
@@ -40,14 +40,12 @@ std::string above(const std::string &floor, double gap, const std::string &optio
       "fix floor all mpm/boundary " + floor + "\n";
 }
 
-double mean_height(Scene &run)
+static double mean_height(Scene &run)
 {
   double sum = 0.0;
   for (int i = 0; i < run.n(); i++) sum += run.x()[i][1] / run.n();
   return sum;
 }
-
-}    // namespace
 
 // a wall pushes a block over a floor: mu N, wherever the floor is in a cell
 SERIAL_TEST(Block, IsPushed)
@@ -75,7 +73,7 @@ SERIAL_TEST(Block, IsPushed)
   }
 }
 
-// on a slope of a smaller angle than that of friction it sticks, on one of a larger one there is no equilibrium
+// on a slope below the angle of friction it sticks, on a steeper one there is no equilibrium
 SERIAL_TEST(Block, SticksOnASlope)
 {
   const auto scene = [](double along, const char *implicit) {
@@ -146,7 +144,7 @@ SERIAL_TEST(Lid, LetsGo)
   }
 }
 
-// a block that a load of 20 times its weight pushes to a floor from up to 2.5 spacings away, and presses, in one step: as in many
+// 20 times its weight pushes a block to a floor from up to 2.5 spacings, in one step as in many
 SERIAL_TEST(Block, ComesFromAfar)
 {
   struct Case {
@@ -167,13 +165,9 @@ SERIAL_TEST(Block, ComesFromAfar)
         Scene run(above(c.floor, gap, c.options, c.low) +
                   "fix g all gravity 200 vector 0 -1 0\n"
                   "fix solve all mpm/implicit euler solver multigrid\n" +
-                  strprintf("timestep %g\nrun %d\n",
-                            many       ? 0.005
-                                : bowl ? 0.02
-                                       : 10.0,
-                            many       ? 400
-                                : bowl ? 200
-                                       : 1));
+                  (many       ? "timestep 0.005\nrun 400\n"
+                       : bowl ? "timestep 0.02\nrun 200\n"
+                              : "timestep 10\nrun 1\n"));
         force[many] = -run.fix("floor")->compute_vector(1);
         mean[many] = mean_height(run);
         if (!many) measured("iterations", run.fix("solve")->compute_vector(0));
@@ -188,41 +182,50 @@ SERIAL_TEST(Block, ComesFromAfar)
     }
 }
 
-// a plate presses a block, in steps that are long and short beside cells: the material goes from node to node
+/** A block of 1 by 1 of rubber (100 and Poisson's number) on a smooth floor, and a region plate that
+ *  moves by a way along y. */
+static std::string press(double nu, const std::string &way, const std::string &plate,
+                         const std::string &kind, const std::string &options = "",
+                         const std::string &extent = "-2 2 0 2.4")
+{
+  return plane("lj", "f f", extent, 1, 0.1) +
+      body("block -0.5 0.5 0 1 INF INF", strprintf("density 1 neohookean 100 %g", nu),
+           "0.1 stress gradient " + options) +
+      "variable way equal " + way + "\nregion plate block " + plate +
+      " INF INF move NULL v_way NULL\nfix floor all mpm/boundary ylo slip\n"
+      "fix press all mpm/boundary region plate " +
+      kind + "\nfix solve all mpm/implicit static\n";
+}
+
+/** The force on the plate when the block has this height. free: its sides are, whose width b is that
+ *  of mu (b^2 - 1) + lambda log J = 0. */
+static double force_at(double height, double nu, bool free)
+{
+  const double mu = 50.0 / (1.0 + nu), lambda = 100.0 * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+  double low = 1.0, high = free ? 1.2 : 1.0;
+  while (high - low > 1e-12) {
+    const double wide = 0.5 * (low + high);
+    (mu * (wide * wide - 1.0) + lambda * std::log(wide * height) < 0.0 ? low : high) = wide;
+  }
+  return -(mu * (height * height - 1.0) + lambda * std::log(low * height)) / height;
+}
+
+// a plate presses a block, in steps longer and shorter than cells: material goes from node to node
 SERIAL_TEST(Block, IsPressed)
 {
-  const double mu = 100.0 / 2.6, lambda = 30.0 / (1.3 * 0.4);
-  for (const double gap : {0.0, 0.03, 0.05}) {
-    const double height = 0.84 + gap;
-    // of a free side: mu (b - 1) + lambda log J = 0
-    double low = 1.0, high = 1.2;
-    while (high - low > 1e-12) {
-      const double wide = 0.5 * (low + high);
-      (mu * (wide * wide - 1.0) + lambda * std::log(wide * height) < 0.0 ? low : high) = wide;
-    }
-    const double exact = -(mu * (height * height - 1.0) + lambda * std::log(low * height)) / height;
+  for (const double gap : {0.0, 0.03, 0.05})
     for (const int steps : {1, 7, 50, 200}) {
-      Scene run(plane("lj", "f f", "-2 2 0 2.4", 1, 0.1) +
-                body("block -0.5 0.5 0 1 INF INF", "density 1 neohookean 100 0.3",
-                     "0.1 stress gradient") +
-                strprintf("variable way equal -0.16*time\n"
-                          "region plate block -1.5 1.5 %.17g 2.2 INF INF move NULL v_way NULL\n",
-                          1.0 + gap) +
-                "fix floor all mpm/boundary ylo slip\n"
-                "fix press all mpm/boundary region plate separate\n"
-                "fix solve all mpm/implicit static\n" +
+      Scene run(press(0.3, "-0.16*time", strprintf("-1.5 1.5 %.17g 2.2", 1.0 + gap), "separate") +
                 strprintf("timestep %.17g\nrun %d\n", 1.0 / steps, steps));
       EXPECT_NEAR(measured(strprintf("from %g in %d steps: force over that of theory", gap, steps),
-                           run.fix("press")->compute_vector(1) / exact),
+                           run.fix("press")->compute_vector(1) / force_at(0.84 + gap, 0.3, true)),
                   1.0, 1.5e-2);
     }
-  }
 }
 
 // the same by a plate that holds what it touches, with a free side, and with one that cannot move
 SERIAL_TEST(Block, IsPressedByAPlateThatHolds)
 {
-  const double height = 0.84;
   struct Case {
     const char *kind, *options;
     double nu;
@@ -232,35 +235,21 @@ SERIAL_TEST(Block, IsPressedByAPlateThatHolds)
        {Case{"slip", "", 0.3, true}, Case{"slip", "", 0.3, false}, Case{"stick", "", 0.0, true},
         Case{"stick", "", 0.3, false}, Case{"slip friction 0.3", "", 0.0, true},
         Case{"stick", "shape cubic", 0.0, true}}) {
-    const double mu = 50.0 / (1.0 + c.nu),
-                 lambda = 100.0 * c.nu / ((1.0 + c.nu) * (1.0 - 2.0 * c.nu));
-    double low = 1.0, high = c.free ? 1.2 : 1.0;
-    while (high - low > 1e-12) {
-      const double wide = 0.5 * (low + high);
-      (mu * (wide * wide - 1.0) + lambda * std::log(wide * height) < 0.0 ? low : high) = wide;
-    }
-    const double exact = -(mu * (height * height - 1.0) + lambda * std::log(low * height)) / height;
     for (const int steps : c.free ? std::vector<int>{1, 10, 100} : std::vector<int>{50}) {
-      Scene run(plane("lj", "f f", c.free ? "-2 2 0 2.4" : "-0.5 0.5 0 2.4", 1, 0.1) +
-                body("block -0.5 0.5 0 1 INF INF", strprintf("density 1 neohookean 100 %g", c.nu),
-                     std::string("0.1 stress gradient ") + c.options) +
-                "variable way equal -0.16*time\n"
-                "region plate block INF INF 1 2.2 INF INF move NULL v_way NULL\n"
-                "fix floor all mpm/boundary ylo slip\n" +
+      Scene run(press(c.nu, "-0.16*time", "INF INF 1 2.2", c.kind, c.options,
+                      c.free ? "-2 2 0 2.4" : "-0.5 0.5 0 2.4") +
                 (c.free ? "" : "fix sides all mpm/boundary xlo xhi slip\n") +
-                "fix press all mpm/boundary region plate " + c.kind +
-                "\n"
-                "fix solve all mpm/implicit static\n" +
                 strprintf("timestep %.17g\nrun %d\n", 1.0 / steps, steps));
       EXPECT_NEAR(measured(strprintf("%s %s, %s side, %d steps: force over that of theory", c.kind,
                                      c.options, c.free ? "free" : "fixed", steps),
-                           run.fix("press")->compute_vector(1) / exact),
+                           run.fix("press")->compute_vector(1) / force_at(0.84, c.nu, c.free)),
                   1.0, 2.5e-3);
     }
   }
 }
 
-// two grips that move apart hold the material inside of them: a bar between them has the length that they leave free, wherever they are on the lattice and among points
+// two grips that move apart hold the material inside of them: a bar between them has the length
+// that they leave free, wherever they are on the lattice and among points
 SERIAL_TEST(Bar, IsPulledByGrips)
 {
   struct Case {
@@ -293,7 +282,7 @@ SERIAL_TEST(Bar, IsPulledByGrips)
   }
 }
 
-// a bar that hangs from a grip: the grip bears all of the weight, and the bar is as long as its free part makes it
+// a bar hangs from a grip, which bears all of its weight; its free part gives its length
 SERIAL_TEST(Bar, HangsFromAGrip)
 {
   for (const char *solve : {"static", "euler"})
@@ -323,7 +312,7 @@ SERIAL_TEST(Bar, HangsFromAGrip)
     }
 }
 
-// a disk between a rim and a hub that turns inside of it, which is a part of the disk or in a hole: torque of theory
+// a disk between a rim and a hub that turns, a part of the disk or in a hole: torque of theory
 SERIAL_TEST(Disk, IsTurnedByAHubInIt)
 {
   for (const bool hole : {false, true}) {
@@ -347,7 +336,7 @@ SERIAL_TEST(Disk, IsTurnedByAHubInIt)
   }
 }
 
-// a slip grip holds whole nodes, up to half a node spacing outside: a gauge of ten of them is longer or shorter by 0.65 of one at most
+// a slip grip holds whole nodes: a gauge of ten spacings is off by 0.65 of one at most
 SERIAL_TEST(Bar, IsPulledByAGripThatSlips)
 {
   for (const double length : {1.0, 1.03, 1.07}) {
@@ -366,31 +355,17 @@ SERIAL_TEST(Bar, IsPulledByAGripThatSlips)
   }
 }
 
-// a plate that holds does so as soon as nodes on both sides of its surface see material: a warning tells when that is across a gap
+// a plate holds as soon as nodes on both sides of its surface see material: a warning tells of gaps
 SERIAL_TEST(Block, IsHeldAcrossAGap)
 {
   for (const char *kind : {"stick", "slip"})
     for (const double gap : {0.0, 0.05}) {
       const auto said = lines_that_say(
-          plane("lj", "f f", "-2 2 0 2.4", 1, 0.05) +
-              body("block -0.5 0.5 0 1 INF INF", "density 1 neohookean 100 0.0",
-                   "0.1 stress gradient") +
-              "variable way equal -0.0075*step\n" +
-              strprintf("region plate block INF INF %g 2.2 INF INF move NULL v_way NULL\n",
-                        1.0 + gap) +
-              "fix floor all mpm/boundary ylo slip\nfix press all mpm/boundary region plate " +
-              kind + "\nfix solve all mpm/implicit static\nrun 2\n",
+          press(0.0, "-0.0075*step", strprintf("INF INF %g 2.2", 1.0 + gap), kind) + "run 2\n",
           "Fix mpm/boundary press: its region plate holds material near");
       EXPECT_EQ(said.size(), gap > 0.0 ? 1u : 0u) << kind << gap;
     }
-  EXPECT_TRUE(lines_that_say(plane("lj", "f f", "-2 2 0 2.4", 1, 0.05) +
-                                 body("block -0.5 0.5 0 1 INF INF", "density 1 neohookean 100 0.3",
-                                      "0.1 stress gradient") +
-                                 "variable way equal -0.01*step\n"
-                                 "region plate block INF INF 1 2.2 INF INF move NULL v_way NULL\n"
-                                 "fix floor all mpm/boundary ylo slip\n"
-                                 "fix press all mpm/boundary region plate stick\n"
-                                 "fix solve all mpm/implicit static\nrun 14\n",
+  EXPECT_TRUE(lines_that_say(press(0.3, "-0.01*step", "INF INF 1 2.2", "stick") + "run 14\n",
                              "across a gap")
                   .empty());
 }

@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart
 // mpi: 1 4
@@ -11,10 +11,8 @@
 
 using namespace MPM_TEST;
 
-namespace {
-
 /** A quantity of compute mpm/atom of all points. */
-std::vector<double> quantity(Scene &run, const std::string &name)
+static std::vector<double> quantity(Scene &run, const std::string &name)
 {
   run.commands("compute q all mpm/atom " + name + "\nthermo_style custom step\n");
   auto *const compute = run.lmp->modify->get_compute_by_id("q");
@@ -25,8 +23,8 @@ std::vector<double> quantity(Scene &run, const std::string &name)
 }
 
 /** A bar of length 1 between two walls, free at its sides: E = 1e9, nu = 0.25, alpha = 1e-5. */
-std::string bar_between_walls(const std::string &grid, const std::string &heat,
-                              const std::string &solve)
+static std::string bar_between_walls(const std::string &grid, const std::string &heat,
+                                     const std::string &solve)
 {
   return plane("si", "f f", "0 1 -0.3 0.5", 1, 0.01) +
       "region bar block 0 1 0 0.2 INF INF\ncreate_points 1 region bar spacing 0.025\n"
@@ -40,8 +38,8 @@ std::string bar_between_walls(const std::string &grid, const std::string &heat,
 }
 
 /** A tube with the radii 1 and 2, plane strain, at T = 100 at its bore and 0 outside. */
-std::string tube(int n, const std::string &solve, const std::string &time, double dt,
-                 const std::string &shape = "quadratic")
+static std::string tube(int n, const std::string &solve, const std::string &time, double dt,
+                        const std::string &shape = "quadratic")
 {
   const double h = 1.0 / n;
   return plane("si", "f p", strprintf("1 2 0 %.17g", 2 * h), 1, 0.3 * h) +
@@ -54,9 +52,9 @@ std::string tube(int n, const std::string &solve, const std::string &time, doubl
       time + "\nfix solve all mpm/implicit " + solve + strprintf("\ntimestep %g\n", dt);
 }
 
-/** Stresses of a free tube in plane strain with the steady temperature 100 ln(2/r)/ln 2 (S.P. Timoshenko, J.N. Goodier, Theory of
- *  Elasticity, 3rd ed., 1970, art. 151). */
-void tube_stress(double r, double &radial, double &hoop)
+/** Stresses of a free tube in plane strain with the steady temperature 100 ln(2/r)/ln 2 (S.P.
+ *  Timoshenko, J.N. Goodier, Theory of Elasticity, 3rd ed., 1970, art. 151). */
+static void tube_stress(double r, double &radial, double &hoop)
 {
   const double a = 1.0, b = 2.0, E = 1e9, nu = 0.25, alpha = 1e-8, all = std::log(b / a),
                factor = E * alpha * 100.0 / (2.0 * (1.0 - nu) * all),
@@ -65,9 +63,7 @@ void tube_stress(double r, double &radial, double &hoop)
   hoop = factor * (1.0 - std::log(b / r) - part * (1.0 + b * b / (r * r)));
 }
 
-}    // namespace
-
-// heated evenly by a source, in one step and in several: sigma = -E alpha T/(1 - nu) in plane strain
+// heated by a source, in one step and in several: sigma = -E alpha T/(1 - nu) in plane strain
 PARAMETER_TEST(Bar, HasThermalStress, const char *, Values("frame total", ""))
 {
   const std::string grid = GetParam();
@@ -90,8 +86,8 @@ PARAMETER_TEST(Bar, HasThermalStress, const char *, Values("frame total", ""))
   }
 }
 
-// the steady state of a tube in steps of 1e9 s. With quadratic functions the stress of single points alternates in a cell, and the error is one of
-// first order, 3.2 % with 16 cells
+// the steady state of a tube in steps of 1e9 s. With quadratic functions the stress of single
+// points alternates in a cell, and the error is one of first order, 3.2 % with 16 cells
 SERIAL_TEST(Tube, HasThermalStress)
 {
   double error[2];
@@ -111,7 +107,7 @@ SERIAL_TEST(Tube, HasThermalStress)
   EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 1.5);
 }
 
-// each step is in equilibrium with the temperatures of its end: one way or another, the same in the end
+// each step is in equilibrium with the temperatures of its end, whatever the way
 SERIAL_TEST(Tube, DoesNotDependOnSteps)
 {
   double outer[2];
@@ -145,7 +141,5 @@ SERIAL_TEST(Bar, WithInertia)
 TEST(Heat, RanksAndRestart)
 {
   const auto scene = tube(8, "static tolerance 1e-11", "time sdirk2 tolerance 1e-12", 2e3);
-  const auto next = "neighbor 0.03 bin\n" +
-      replaced(scene.substr(scene.find("fix grid")), "create_points 1 box ppc 2\n", "");
-  Twins(scene, 3, next, 3, 1e-9);
+  Twins(scene, 3, lines_again(scene), 3, 1e-9);
 }

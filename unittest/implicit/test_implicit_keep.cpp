@@ -1,19 +1,17 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart ranks
 // mpi: 1 4
 
 // Fix mpm/implicit: what steps with inertia keep for the next ones.
 
-#include "mpm_lammps.h"
+#include "implicit/implicit_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-/** A beam of 10 by 1 that falls from rest at its clamp and swings by nearly half of its length, 4 cells in its depth. */
-std::string swing(const std::string &options, const std::string &implicit, double cfl)
+/** A clamped beam of 10 by 1, 4 cells deep, falls from rest and swings by half of its length. */
+static std::string swing(const std::string &options, const std::string &implicit, double cfl)
 {
   const double h = 0.025, c = std::sqrt(0.7e6 / 0.52 / 1000.0);
   return plane("si", "f f", "0 1.2 -0.9 0.4", 1, 0.3 * h) +
@@ -22,23 +20,7 @@ std::string swing(const std::string &options, const std::string &implicit, doubl
       "fix solve all mpm/implicit " + implicit + strprintf("\ntimestep %.17g\n", cfl * h / c);
 }
 
-std::vector<double> places(Scene &run)
-{
-  std::vector<double> x;
-  for (int i = 0; i < run.n(); i++) x.insert(x.end(), run.x()[i], run.x()[i] + 2);
-  return x;
-}
-
-double largest_difference(const std::vector<double> &a, const std::vector<double> &b)
-{
-  double most = 0.0;
-  for (std::size_t k = 0; k < a.size(); k++) most = std::max(most, std::fabs(a[k] - b[k]));
-  return most;
-}
-
-}    // namespace
-
-// factors of a tangent serve several steps, and lead to where Newton's method goes with conjugate gradients
+// factors of a tangent serve several steps, and lead to where conjugate gradients do
 SERIAL_TEST(Keep, FactorsServeSeveralSteps)
 {
   struct Case {
@@ -59,8 +41,7 @@ SERIAL_TEST(Keep, FactorsServeSeveralSteps)
                       c.cfl) +
                 strprintf("run %d\n", c.steps));
       x[keeps] = places(run);
-      const double made = run.fix("solve")->compute_vector(10),
-                   iterations = run.fix("solve")->compute_vector(5) / c.steps;
+      const double made = solved(run, 10), iterations = solved(run, 5) / c.steps;
       if (!keeps) {
         EXPECT_EQ(made, 0.0);
         continue;
@@ -74,7 +55,7 @@ SERIAL_TEST(Keep, FactorsServeSeveralSteps)
   }
 }
 
-// where points come to other cells, nodes are others, and nothing of what was kept for those before is of use
+// where points come to other cells, nothing that was kept for the nodes before is of use
 SERIAL_TEST(Keep, OnlyWhileNodesAreTheSame)
 {
   for (const char *method : {"midpoint", "euler"}) {
@@ -87,7 +68,7 @@ SERIAL_TEST(Keep, OnlyWhileNodesAreTheSame)
                          "gravity 1.9", "gravity 1.0") +
                 "run 30\n");
       x[keeps] = places(run);
-      if (keeps) EXPECT_GE(measured("factors", run.fix("solve")->compute_vector(10)), 15.0);
+      if (keeps) EXPECT_GE(measured("factors", solved(run, 10)), 15.0);
     }
     EXPECT_LT(measured("difference", largest_difference(x[0], x[1])), 1e-6) << method;
   }
@@ -100,8 +81,8 @@ TEST(Keep, NodesMayChangeRanks)
     Scene run(processors +
               swing("frame total transfer flip 1.0", "newmark solver multigrid", 50.0) +
               "run 24\n");
-    EXPECT_LE(measured("factors", run.fix("solve")->compute_vector(10)), 2.0);
-    EXPECT_LE(measured("iterations in a step", run.fix("solve")->compute_vector(5) / 24.0), 8.0);
+    EXPECT_LE(measured("factors", solved(run, 10)), 2.0);
+    EXPECT_LE(measured("iterations in a step", solved(run, 5) / 24.0), 8.0);
   }
 }
 
@@ -119,20 +100,18 @@ SERIAL_TEST(Keep, WallsMayMove)
                        "velocity 0 v_shake 0\n") +
               "run 20\n");
     x[keeps] = places(run);
-    if (keeps) EXPECT_LE(measured("factors", run.fix("solve")->compute_vector(10)), 6.0);
+    if (keeps) EXPECT_LE(measured("factors", solved(run, 10)), 6.0);
   }
   EXPECT_LT(measured("difference", largest_difference(x[0], x[1])), 1e-6);
 }
 
-// four ranks do what one does; a run goes on from a restart file to the last bit, as writing one makes steps begin without what was kept
+// four ranks do what one does; a run goes on from a restart file to the last bit
 TEST(Keep, RanksAndRestart)
 {
   for (const std::string method : {"newmark", "alpha rho 0.5"}) {
     const auto scene =
         swing("frame total transfer flip 1.0", method + " tolerance 1e-11 solver multigrid", 50.0);
-    const auto next = "neighbor 0.0075 bin\n" + scene.substr(scene.find("fix grid"));
-    const auto fixes = replaced(replaced(next, "region body block 0 1 0 0.1 INF INF\n", ""),
-                                "create_points 1 region body ppc 2\n", "");
+    const auto fixes = lines_again(scene);
     Twins(scene, 6, fixes, 6, 1e-9);
 
     const ScratchFile file("keep.restart");
@@ -142,7 +121,7 @@ TEST(Keep, RanksAndRestart)
   }
 }
 
-// statics of a body that nothing holds is told at once, and only where forces push it: of two bodies, and along the slope of a wall
+// statics of a body that nothing holds is told at once, of two bodies, and along a slope
 SERIAL_TEST(Free, BodiesAreToldAtOnce)
 {
   const std::string two = plane("si", "f f", "0 2 0 2", 1, 0.02) +

@@ -1,26 +1,19 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 
 // Fix mpm/implicit with loads of fix mpm/traction, which follow the surface within a step.
 
-#include "mpm_lammps.h"
-
-#include "field/mpm_plan.h"
-#include "implicit/mpm_tangent.h"
-
-#include <map>
+#include "implicit/implicit_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-/** A quarter of a tube of rubber, inner radius 1, outer radius 2, under a load on its bore: p times the shear modulus at the end of
- *  that many steps (benchmark S2). */
-std::string tube(const std::string &load, double p, int steps, const std::string &solve,
-                 const std::string &grid = "0.1 frame total")
+/** A quarter of a tube of rubber, inner radius 1, outer radius 2, under a load on its bore: p times
+ *  the shear modulus at the end of that many steps (benchmark S2). */
+static std::string tube(const std::string &load, double p, int steps, const std::string &solve,
+                        const std::string &grid = "0.1 frame total")
 {
   return plane("si", "f f", "0 3 0 3", 1, 0.03) + "fix grid all mpm " + grid +
       "\nregion outer cylinder z 0 0 2 INF INF\nregion bore cylinder z 0 0 1 INF INF side out\n"
@@ -33,8 +26,8 @@ std::string tube(const std::string &load, double p, int steps, const std::string
       "\ncompute e all mpm/energy\nthermo_style custom step f_gas[4] c_e\ntimestep 1.0\n";
 }
 
-/** A bar of length 1 with free sides, a quarter of it, and a load T on its end (benchmark S1), in two steps. */
-std::string bar(const std::string &load, double T, const std::string &solve)
+/** A quarter of a bar of length 1 with free sides, a load T on its end (S1), in two steps. */
+static std::string bar(const std::string &load, double T, const std::string &solve)
 {
   return space("si", "f f f", "0 2.2 0 0.8 0 0.8", 1, 0.03) + "fix grid all mpm 0.1 frame total" +
       "\nregion bar block 0 1 0 0.4 0 0.4\ncreate_points 1 region bar ppc 2\n"
@@ -44,8 +37,6 @@ std::string bar(const std::string &load, double T, const std::string &solve)
       "fix load all mpm/traction region end " + load + "\nfix solve all mpm/implicit static " +
       solve + "\ntimestep 1.0\n";
 }
-
-}    // namespace
 
 // pressure acts on the area of the end of the step, whatever its length: benchmark S2
 SERIAL_TEST(Tube, Widens)
@@ -111,25 +102,16 @@ SERIAL_TEST(Bar, Stretches)
                                            c.follows ? "following" : "dead", c.load),
                                  sum / n / c.stretch - 1.0)),
               5e-3);
-    EXPECT_LE(run.fix("solve")->compute_vector(0), 8.0);
+    EXPECT_LE(solved(run, 0), 8.0);
   }
 }
 
 // of Newton's method, with a load in one step whose area grows by half
 SERIAL_TEST(Tube, ConvergesQuadratically)
 {
-  const auto lines = lines_that_say(
-      tube("pressure v_p", 0.4, 1, "static tolerance 1e-13 accuracy 1e-10 report yes") + "run 1\n",
-      "  implicit step");
-  ASSERT_EQ(lines.size(), 1u);
-  std::vector<double> r;
-  std::istringstream words(lines[0].substr(lines[0].find("forces") + 6));
-  for (double one; words >> one;) r.push_back(one);
-  ASSERT_GT(r.size(), 4u);
-  std::size_t last = r.size() - 1;
-  while (last > 3 && r[last] < 1e-9 * r[0]) last--;
-  const double order = std::log(r[last] / r[last - 1]) / std::log(r[last - 1] / r[last - 2]);
-  EXPECT_GE(measured("order", order), 1.8);
+  expect_quadratic(
+      "tube",
+      tube("pressure v_p", 0.4, 1, "static tolerance 1e-13 accuracy 1e-10 report yes") + "run 1\n");
 }
 
 // the change of forces with loads against differences of forces
@@ -151,41 +133,10 @@ SERIAL_TEST(Tangent, KnowsTheLoads)
                 "fix walls all mpm/boundary xlo slip\nvariable a atom 1e5*(1+x*y)\n"
                 "fix gas all mpm/traction " +
                 load + "\ntimestep 1e-3\nrun 0\n");
-      for (int i = 0; i < run.n(); i++)
-        for (const int c : {0, 1, 3, 4, 8})
-          if (c < 8 || axis) run.points().F[i][c] += 0.05 * std::sin(1.3 * (9 * i + c));
+      distort(run, 0.05, axis);
       run.commands("run 0\n");    // loads of these
-      auto *const field = MPMField::find(run.lmp, "grid");
-      field->plan->find_blocks_now();
-      MPMTangent tangent(run.lmp, *field);
-      tangent.init();
-      const std::size_t n = field->grid.nnodes() * 2;
-      std::vector<double> u(n), du(n), start(n), low(n), high(n), df(n), without(n);
-      tangent.external_forces(start.data());
-      EXPECT_TRUE(tangent.has_loads());
-      for (std::size_t k = 0; k < n; k++) {
-        u[k] = 0.01 * std::sin(1.7 * k);
-        du[k] = std::sin(2.9 * k + 1.0);
-      }
-      field->nodes.complete(u.data(), 2, 2);
-      const double dt = 1e-3, eps = 1e-6;
-      double carried, worst = 0.0, most = 0.0, changed = 0.0;
-      tangent.linearize(u.data(), dt);
-      tangent.change_of_forces(du.data(), df.data());
-      auto shifted = u;
-      for (std::size_t k = 0; k < n; k++) shifted[k] = u[k] + eps * du[k];
-      ASSERT_TRUE(tangent.forces(shifted.data(), dt, high.data(), carried));
-      tangent.loads(shifted.data(), without.data());
-      for (std::size_t k = 0; k < n; k++) shifted[k] = u[k] - eps * du[k];
-      ASSERT_TRUE(tangent.forces(shifted.data(), dt, low.data(), carried));
-      tangent.loads(shifted.data(), start.data());
-      for (std::size_t k = 0; k < n; k++) {
-        worst = std::max(worst, std::fabs((high[k] - low[k]) / (2.0 * eps) - df[k]));
-        most = std::max(most, std::fabs(df[k]));
-        changed = std::max(changed, std::fabs(without[k] - start[k]) / (2.0 * eps));
-      }
-      EXPECT_LT(measured(std::string(options) + " " + load, worst / most), 1e-6);
-      EXPECT_GT(changed / most, 1e-3) << "the load has a part in it";
+      EXPECT_GT(expect_tangent(run, std::string(options) + " " + load, 0.01, 1e-3, 0), 1e-3)
+          << "the load has a part in it";
     }
 }
 
@@ -202,8 +153,7 @@ SERIAL_TEST(Free, IsThePressureInside)
               "fix solve all mpm/implicit static tolerance 1e-10\ntimestep 1.0\nrun 1\n");
     double most = 0.0;
     for (int i = 0; i < run.n(); i++) {
-      double sigma[6];
-      run.points().cauchy(i, sigma);
+      const auto sigma = run.cauchy(i);
       for (const int c : {0, 1, 2, 3})
         if (c != 2 || axis) most = std::max(most, std::fabs(sigma[c] + (c < 3 ? 3e5 : 0.0)));
     }
@@ -218,24 +168,22 @@ SERIAL_TEST(Report, OutlivesTheRun)
   const ScratchFile file("restart");
   Scene run(scene + "run 1\n");
   std::vector<double> before;
-  for (int k = 0; k < 8; k++) before.push_back(run.fix("solve")->compute_vector(k));
+  for (int k = 0; k < 8; k++) before.push_back(solved(run, k));
   before.push_back(run.fix("solve")->compute_scalar());
   EXPECT_GT(before[0], 1.0);
   run.commands("run 0\nwrite_restart " + file.name + "\n");
-  Scene again("read_restart " + file.name + "\nneighbor 0.03 bin\n" +
-              replaced(scene.substr(scene.find("fix grid")),
-                       "create_points 1 region tube ppc 2 outside ignore\n", "") +
-              "run 0\n");
+  Scene again("read_restart " + file.name + "\n" + lines_again(scene) + "run 0\n");
   for (int k = 0; k < 8; k++) {
-    EXPECT_EQ(run.fix("solve")->compute_vector(k), before[k]) << k;
-    EXPECT_EQ(again.fix("solve")->compute_vector(k), before[k]) << k;
+    EXPECT_EQ(solved(run, k), before[k]) << k;
+    EXPECT_EQ(solved(again, k), before[k]) << k;
   }
   EXPECT_EQ(run.fix("solve")->compute_scalar(), before[8]);
   EXPECT_EQ(again.fix("solve")->compute_scalar(), before[8]);
 }
 
-// benchmark P1 (c): an end moment rolls a beam up. kappa over M/EI, and the stretch of its middle, are those of this rubber in pure bending in plane strain
-// (the equations of a curved strip solved as a boundary value problem)
+// benchmark P1 (c): an end moment rolls a beam up. kappa over M/EI, and the stretch of its middle,
+// are those of this rubber in pure bending in plane strain (the equations of a curved strip solved
+// as a boundary value problem)
 SERIAL_TEST(Beam, IsRolledUpByAMoment)
 {
   struct Case {
@@ -281,14 +229,14 @@ SERIAL_TEST(Beam, IsRolledUpByAMoment)
                 1e-9);
     EXPECT_LT(std::hypot(f[0], f[1]), 1e-9 * M);
     const double work = run.fix("bend")->compute_scalar(), *const e = run.compute_vector();
-    // the load of the next step is there at the end of a step, so that its mean is late by half of one
+    // the load of the next step is there at the end of a step: its mean is late by half of one
     EXPECT_NEAR(measured("work over energy", work / e[1]), 1.0, 2.0 / c.steps);
     EXPECT_LT(std::fabs(measured("residual of the ledger over energy", e[9] / e[1])),
               1.5 / c.steps);
   }
 }
 
-// in space, a moment with a part along the axis of a bar bends and twists it; forces of explicit steps are the same
+// a moment with a part along the axis of a bar bends and twists it, as in explicit steps
 SERIAL_TEST(Bar, HasAMomentInSpace)
 {
   for (const char *solve :
@@ -339,8 +287,9 @@ SERIAL_TEST(Physics, ThatIsRefused)
       "run 1\n");
 }
 
-// A load on a disk of radius 1 on a block of radius and height 10, on rollers (U2): settlement of the surface at the middle and at the rim of the disk by finite
-// elements that were refined, and the vertical stress a radius below, which is that of a half space (Boussinesq)
+// A load on a disk of radius 1 on a block of radius and height 10, on rollers (U2): settlement of
+// the surface at the middle and at the rim of the disk by finite elements that were refined, and
+// the vertical stress a radius below, which is that of a half space (Boussinesq)
 SERIAL_TEST(Boussinesq, SettlementAndStress)
 {
   const double h = 0.25, p = 1e3, E = 1e7;
@@ -355,7 +304,7 @@ SERIAL_TEST(Boussinesq, SettlementAndStress)
                 10.0 - 0.5 * h, -p));
   run.set_reference();
   run.commands("run 1\n");
-  // columns of points next to the axis and to the rim, layers below the surface and around the depth
+  // columns next to the axis and to the rim, layers below the surface and around the depth
   std::map<tagint, double> sigma;
   for (const auto &point : run.gather()) sigma[(tagint) point.tag] = point.stress[1];
   double w[3][2], stress = 0.0;

@@ -16,14 +16,12 @@
 
 using namespace LAMMPS_NS;
 
-namespace {
-
 struct Oscillator {
   double x = 1.0, v = 0.0, a = 0.0;
 };
 
 /** A step of duration dt of an oscillator with the frequency w and the mass 1. */
-void step(const MPMTimeMethod &method, double w, double dt, Oscillator &at)
+static void step(const MPMTimeMethod &method, double w, double dt, Oscillator &at)
 {
   const auto with = method.coefficients();
   const double f0 = -w * w * at.x, c = method.inertia_factor(dt), end = method.force_share(),
@@ -46,7 +44,7 @@ void step(const MPMTimeMethod &method, double w, double dt, Oscillator &at)
 }
 
 /** Error of the position after a quarter more than a period, in n steps. */
-double error(const MPMTimeMethod &method, int n)
+static double error(const MPMTimeMethod &method, int n)
 {
   const double w = 2.0, time = 4.0, dt = time / n;
   Oscillator at;
@@ -56,7 +54,7 @@ double error(const MPMTimeMethod &method, int n)
 }
 
 /** What is left in a step of an oscillation that is much faster. */
-double left_of_fast_ones(const MPMTimeMethod &method)
+static double left_of_fast_ones(const MPMTimeMethod &method)
 {
   const double w = 1.0e4;
   Oscillator at;
@@ -69,8 +67,6 @@ double left_of_fast_ones(const MPMTimeMethod &method)
   for (int k = 0; k < 100; k++) step(method, w, 1.0, at);
   return std::pow(size() / before, 0.01);
 }
-
-}    // namespace
 
 TEST(TimeMethod, OrderOfAccuracy)
 {

@@ -1,21 +1,21 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
 // timeout: 300
 
-// Fix mpm/implicit with fix mpm/pore: consolidation in steps of any length, soil and water together.
+// Fix mpm/implicit with fix mpm/pore: consolidation of soil and water in steps of any length.
 
 #include "pore/pore_testing.h"
 
 using namespace MPM_TEST;
 
-namespace {
-
-/** Terzaghi's column of n cells, loaded at once, by two rows of points whose mean place is the surface. */
-std::string loaded(int n, double Kf, double k, const std::string &options = "free pressure 0",
-                   const std::string &solve = "static", double top = 1.2, double offset = 0.0)
+/** Terzaghi's column of n cells, loaded at once by two rows of points around the surface. */
+static std::string loaded(int n, double Kf, double k,
+                          const std::string &options = "free pressure 0",
+                          const std::string &solve = "static", double top = 1.2,
+                          double offset = 0.0)
 {
   return column(n, strprintf("%.17g 1000 9810 soil m 0.4 constant %g ", Kf, k) + options, SOIL, top,
                 offset) +
@@ -27,26 +27,24 @@ std::string loaded(int n, double Kf, double k, const std::string &options = "fre
                 LOAD) +
       "fix solve all mpm/implicit " + solve + "\n";
 }
-double consolidation_rate(double Kf, double k)
+static double consolidation_rate(double Kf, double k)
 {
   return k / 9810.0 / (1.0 / MODULUS + 0.4 / Kf);
 }
-double settlement(Scene &run)
+static double settlement(Scene &run)
 {
   double V = 0.0, L = run.lmp->domain->prd[0];
   for (int i = 0; i < run.n(); i++) V += run.lmp->atom->vfrac[i] * run.points().jacobian(i);
   return 1.0 - V / L;
 }
 /** Lines for steps of this length. */
-std::string steps(double dt, int n)
+static std::string steps(double dt, int n)
 {
   return strprintf("timestep %.17g\nrun %d\n", dt, n);
 }
 
-}    // namespace
-
-// Terzaghi in 40 steps to each of the times of the table, which are 10 to 10^9 times as long as explicit ones: settlement and pressure at
-// the base, with a drained face in a plane of nodes and a free surface off these
+// Terzaghi in 40 steps to each of the times of the table, 10 to 10^9 times as long as explicit
+// ones: settlement and pressure at the base, with faces at nodes and off these
 struct Column {
   double Kf, k;
   const char *options;
@@ -72,7 +70,7 @@ SERIAL_TEST(Terzaghi, Consolidates)
       EXPECT_NEAR(measured(name + "settlement", S / expected), 1.0, 0.01);
       EXPECT_NEAR(measured(name + "pressure at the base", p), base, 0.01);
     }
-    // what has come out is what the soil has settled, less the volume that the pressure has taken from the water
+    // what has come out is what the soil has settled, less what pressure has taken from the water
     const double out = -run.fix("water")->compute_scalar() / run.lmp->domain->prd[0],
                  taken = 0.4 / at.Kf * water.mean(0.0, 1.0);
     EXPECT_NEAR(measured("water that came out", (out + taken) / settlement(run)), 1.0, 1e-4);
@@ -93,8 +91,8 @@ SERIAL_TEST(Terzaghi, FirstOrder)
   EXPECT_NEAR(measured("order", std::log2((S[1] - S[0]) / (S[2] - S[1]))), 1.0, 0.1);
 }
 
-// a load at once on water that cannot flow: all of it is in the pressure, which must not alternate, whatever the
-// permeability and the water, also of water that is all but incompressible
+// a load at once on water that cannot flow: all of it is in the pressure, which must not alternate,
+// whatever the permeability and the water, also of water that is all but incompressible
 SERIAL_TEST(Undrained, WithoutOscillation)
 {
   const int n = 20;
@@ -118,7 +116,7 @@ SERIAL_TEST(Undrained, WithoutOscillation)
     }
 }
 
-// steps that are far longer than consolidation takes: the end at once, and nothing in those that follow
+// steps that are far longer than consolidation: the end at once, and nothing after that
 SERIAL_TEST(Drained, AtOnce)
 {
   Scene run(loaded(20, 2.2e9, 1e-3, "free pressure 0", "static solver multigrid") + steps(1e9, 8));
@@ -156,8 +154,9 @@ SERIAL_TEST(Drained, Seeps)
   }
 }
 
-// Mandel's strip between smooth plates: these move as they do under a constant force (A. Cheng, E. Detournay, Int. J. Numer. Anal. Methods
-// Geomech. 12 (1988) 551), and the pressure in the middle rises first; the force is that
+// Mandel's strip between smooth plates: these move as they do under a constant force (A. Cheng, E.
+// Detournay, Int. J. Numer. Anal. Methods Geomech. 12 (1988) 551), and the pressure in the middle
+// rises first; the force is that
 SERIAL_TEST(Mandel, PressureRisesFirst)
 {
   const double nu = 0.2, nu_u = 0.5, E = (1 + nu) * (1 - 2 * nu) / (1 - nu), G = E / (2 * (1 + nu)),
@@ -223,9 +222,10 @@ SERIAL_TEST(Mandel, PressureRisesFirst)
   EXPECT_NEAR(measured("at", at_peak), 0.072, 0.01);
 }
 
-// Cryer's problem in the plane: a cylinder under pressure from all sides, drained at its curved surface, less the state in which all
-// pressures are the same. Soil and water are at rest, without stress, when the pressure around them falls, and the water is all but
-// incompressible. The numbers are by Laplace inversion, as those of the sphere in the benchmark
+// Cryer's problem in the plane: a cylinder under pressure from all sides, drained at its curved
+// surface, less the state in which all pressures are the same. Soil and water are at rest, without
+// stress, when the pressure around them falls, and the water is all but incompressible. The numbers
+// are by Laplace inversion, as those of the sphere in the benchmark
 SERIAL_TEST(Cryer, PressureRisesFirst)
 {
   const int n = 16;
@@ -267,10 +267,9 @@ SERIAL_TEST(Cryer, PressureRisesFirst)
   EXPECT_LT(measured("iterations in a step", iterations / steps_taken), 50.0);
 }
 
-namespace {
-
-/** Settlement at a time of 0.05 of a column whose soil bears a load of half of its modulus in the end, put on at once. how: steps to this time. */
-double settlement_of_large_load(int n, const std::string &permeability, const std::string &how)
+/** Settlement at 0.05 of a column under half of its modulus, put on at once. how: steps. */
+static double settlement_of_large_load(int n, const std::string &permeability,
+                                       const std::string &how)
 {
   const double q = 0.5, h = 1.0 / n;
   Scene run(
@@ -287,11 +286,10 @@ double settlement_of_large_load(int n, const std::string &permeability, const st
   return settlement(run);
 }
 
-}    // namespace
-
-// a load at once of as much as the shear modulus of the soil: with the pressure that it makes at first, and nothing else, soil would not
-// stand still, and solutions for its motion alone have to do without. Short steps, in which water has no time to flow through a cell, show that.
-// The settlement is that of finite volumes in test_pore_consolidation.cpp
+// a load at once of as much as the shear modulus of the soil: with the pressure that it makes at
+// first, and nothing else, soil would not stand still, and solutions for its motion alone have to
+// do without. Short steps, in which water has no time to flow through a cell, show that. The
+// settlement is that of finite volumes in test_pore_consolidation.cpp
 SERIAL_TEST(LargeLoad, InShortSteps)
 {
   double error[2];
@@ -305,8 +303,8 @@ SERIAL_TEST(LargeLoad, InShortSteps)
   EXPECT_LT(error[1], 0.015);
 }
 
-// the same, with a permeability that falls to 1/10 within a cell of the surface: that of a step is that at its start, so that steps are
-// short at first
+// the same, with a permeability that falls to 1/10 within a cell of the surface: that of a step is
+// that at its start, so that steps are short at first
 SERIAL_TEST(LargeLoad, KozenyCarman)
 {
   std::string how;
@@ -354,8 +352,8 @@ SERIAL_TEST(Space, Consolidates)
   EXPECT_LT(measured("rms", rms / LOAD), 0.01);
 }
 
-// layers of ten times different permeability, one behind the other, and a head outside: steady flow, in which the
-// gradients are those of the layers
+// layers of ten times different permeability, one behind the other, and a head outside: steady
+// flow, in which the gradients are those of the layers
 SERIAL_TEST(Layers, Seep)
 {
   const int n = 20;
@@ -378,10 +376,8 @@ SERIAL_TEST(Layers, Seep)
   EXPECT_NEAR(flows[3] / flows[2], -1.0, 1e-6);
 }
 
-namespace {
-
-/** A block of two soils on a smooth floor, pressed in a part of its surface, with water from below and out at the top. */
-std::string pressed(const std::string &solve)
+/** A block of two soils, pressed in a part of its surface, with water from below to the top. */
+static std::string pressed(const std::string &solve)
 {
   return plane("si", "f f", "0 2 0 1.2", 2, 0.02) + "fix grid all mpm 0.1 origin 0 0.02\n" +
       bodies({{"low", "block 0 2 0 0.45 INF INF"}, {"high", "block 0 2 0.5 1 INF INF"}}) +
@@ -396,9 +392,7 @@ std::string pressed(const std::string &solve)
       solve + "\ntimestep 2000\n";
 }
 
-}    // namespace
-
-// the mass of all points changes by what comes through the surface, to round-off, however accurate the solution is
+// the mass of points changes by what comes through the surface, however accurate the solution is
 SERIAL_TEST(Water, IsKept)
 {
   for (const char *solve : {"static", "euler tolerance 1e-4"}) {
@@ -415,12 +409,7 @@ SERIAL_TEST(Water, IsKept)
 TEST(Ranks, AgreeAndRestartContinues)
 {
   const std::string scene = pressed("static tolerance 1e-11 solver multigrid");
-  std::string fixes = "neighbor 0.02 bin\n";
-  for (std::size_t at = 0, end; at < scene.size(); at = end + 1) {
-    end = scene.find('\n', at);
-    if (scene.compare(at, 4, "fix ") == 0) fixes += scene.substr(at, end - at) + "\n";
-  }
-  Twins runs(scene + PORE, 2, fixes + PORE + "timestep 2000\n", 2, 1e-9);
+  Twins runs(scene + PORE, 2, lines_again(scene) + PORE, 2, 1e-9);
   EXPECT_LT(water_difference(runs.serial, runs.whole), 1e-9 * 1e4);
   EXPECT_EQ(water_difference(runs.whole, runs.again), 0.0);
   const double came = runs.serial.fix("water")->compute_scalar();

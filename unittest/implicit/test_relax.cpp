@@ -1,5 +1,5 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
 // labels: physics mpi restart input
 // mpi: 1 4
@@ -8,15 +8,10 @@
 
 #include "meshgrid/mesh_grid_testing.h"
 
-#include "force.h"
-#include "update.h"
-
 using namespace MPM_TEST;
 
-namespace {
-
 /** A column of soil, 1 m high, of n cells, which gets its weight at once. */
-std::string column(int n, const std::string &options, const std::string &relax)
+static std::string column(int n, const std::string &options, const std::string &relax)
 {
   const double h = 1.0 / n;
   return plane("si", "p f", strprintf("0 %.17g 0 1.2", 4 * h), 1, 0.3 * h) +
@@ -30,15 +25,15 @@ std::string column(int n, const std::string &options, const std::string &relax)
 }
 constexpr double MODULUS = 1e7 * 0.7 / (1.3 * 0.4);
 
-double settlement(Scene &run, double h)
+static double settlement(Scene &run, double h)
 {
   double top = 0.0;
   for (int i = 0; i < run.n(); i++) top = std::max(top, run.x()[i][1]);
   return 1.0 - 0.25 * h - top;
 }
 
-/** A beam of length 1 and depth 0.1, clamped at x = 0, of n cells in its depth, under its weight. */
-std::string beam(int n, const std::string &relax, const std::string &options = "")
+/** A beam of length 1 and depth 0.1, clamped at x = 0, n cells deep, under its weight. */
+static std::string beam(int n, const std::string &relax, const std::string &options = "")
 {
   const double h = 0.1 / n;
   return plane("si", "f f", "0 1.2 -0.3 0.4", 1, 0.3 * h) +
@@ -50,9 +45,7 @@ std::string beam(int n, const std::string &relax, const std::string &options = "
       relax + strprintf("\ntimestep %g\n", 0.6 * h / 316.3);
 }
 
-}    // namespace
-
-// stress is the weight above, the settlement that of the elastic modulus; energy that is taken away is no numerical error
+// stress is the weight above, the settlement elastic; energy that is taken is no numerical error
 SERIAL_TEST(Column, ComesToRest)
 {
   for (const char *options :
@@ -68,8 +61,7 @@ SERIAL_TEST(Column, ComesToRest)
     for (int i = 0; i < run.n(); i++) {
       for (int d = 0; d < 3; d++) EXPECT_EQ(run.v()[i][d], 0.0);
       const double depth = 1.0 - run.x()[i][1];
-      double sigma[6];
-      run.points().cauchy(i, sigma);
+      const auto sigma = run.cauchy(i);
       if (depth > 0.1 && depth < 0.9)
         most = std::max(most, std::fabs(sigma[1] + 1600 * 9.81 * depth));
     }
@@ -78,8 +70,9 @@ SERIAL_TEST(Column, ComesToRest)
   }
 }
 
-// Critical damping of the slowest mode, with a coefficient from theory, takes 21.6 n steps of half the limit until the forces
-// of a hanging bar of n cells have fallen by 1e6; without any input from users it may be half as much again.
+// Critical damping of the slowest mode, with a coefficient from theory, takes 21.6 n steps of half
+// the limit until the forces of a hanging bar of n cells have fallen by 1e6; without any input from
+// users it may be half as much again.
 SERIAL_TEST(Bar, ComesToRestInFewSteps)
 {
   for (const int n : {25, 100})
@@ -100,8 +93,8 @@ SERIAL_TEST(Bar, ComesToRestInFewSteps)
     }
 }
 
-// What does not come to rest is told, and ends: a soft half on a stiff one, whose steps are those of the stiff one, and a body
-// that nothing holds.
+// What does not come to rest is told, and ends: a soft half on a stiff one, whose steps are those
+// of the stiff one, and a body that nothing holds.
 SERIAL_TEST(Bar, TellsThatItMoves)
 {
   const auto bar = replaced(column(20, "frame total", "1e-6"), "9.81", "1e-4") + "run 2000\n";
@@ -137,8 +130,9 @@ SERIAL_TEST(Beam, BendsUnderItsWeight)
   EXPECT_GT(error[0] / error[1], 3.0);
 }
 
-// Forces of stress mls pull at surfaces that are inclined to the lattice: a beam that bends by 8 degrees comes to rest too far down, after ten
-// times as many steps, of which a warning tells while it turns; others are where the total frame has them, and a column turns nowhere
+// Forces of stress mls pull at surfaces that are inclined to the lattice: a beam that bends by 8
+// degrees comes to rest too far down, after ten times as many steps, of which a warning tells while
+// it turns; others are where the total frame has them, and a column turns nowhere
 SERIAL_TEST(Beam, TellsThatMlsBendsItTooFar)
 {
   const auto bent = [](const std::string &options) {
@@ -162,8 +156,9 @@ SERIAL_TEST(Beam, TellsThatMlsBendsItTooFar)
   EXPECT_NEAR(measured("default, stress gradient, over frame total", low[0] / low[1]), 1.0, 0.015);
 }
 
-// Stress is that of gradients by default while the fix is there, wherever it is defined: to the last bit what a run that asks for it has. A run
-// without the fix has moving least squares again, and restart files know of none that the input has not
+// Stress is that of gradients by default while the fix is there, wherever it is defined: to the
+// last bit what a run that asks for it has. A run without the fix has moving least squares again,
+// and restart files know of none that the input has not
 SERIAL_TEST(Beam, StressByDefaultIsThatOfGradients)
 {
   const auto scene = [](const std::string &options) {
@@ -210,9 +205,9 @@ SERIAL_TEST(Beam, StressByDefaultIsThatOfGradients)
   expect_error(refused, go_on(later.name, "stress gradient", ""), "stress mls (now gradient)");
 }
 
-// Stops add nothing to vibrations that come to their maximum in two or three steps: those of a bar of one cell across grew
-// by 10 % with each rest when nothing else was left, and those of linear functions so that points got lost. The ledger has what nodes do not get
-// in the steps after such rests
+// Stops add nothing to vibrations that come to their maximum in two or three steps: those of a bar
+// of one cell across grew by 10 % with each rest when nothing else was left, and those of linear
+// functions so that points got lost. The ledger has this
 SERIAL_TEST(Bar, VibrationsOfFewStepsDecay)
 {
   for (const char *options : {"0.5 apic", "0.7 apic", "0.5 apic shape linear"}) {
@@ -232,8 +227,8 @@ SERIAL_TEST(Bar, VibrationsOfFewStepsDecay)
   }
 }
 
-// A bar of elements that hangs from a wall: what elements put on their nodes at a rest is no work of loads, which would be missing by
-// 8 % of the energy in play
+// A bar of elements that hangs from a wall: what elements put on their nodes at a rest is no work
+// of loads, which would be missing by 8 % of the energy in play
 SERIAL_TEST(Bar, OfElementsGainsNothing)
 {
   const ScratchFile mesh("bar.msh", gmsh(QUADS, {8, 1, 0}, [](double x, double y, double) {
@@ -305,8 +300,7 @@ TEST(Column, RanksAndRestart)
   const auto scene = column(10, "", "1e-6");
   OnRanks run(scene, "run 60\n");
   EXPECT_LT(run.difference(), 1e-11);
-  const auto fixes = "neighbor 0.03 bin\n" + scene.substr(scene.find("fix grid"));
-  Continued again(scene, 20, fixes, 30);
+  Continued again(scene, 20, lines_again(scene), 30);
   EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
   for (int k = 0; k < 4; k++)
     EXPECT_EQ(again.whole.fix("rest")->compute_vector(k),

@@ -182,8 +182,7 @@ TEST(Grid, NodesAreReachedThroughImages)
   }
 }
 
-// images beyond the reach of points are still no nodes of their own, but have no part in sums and
-// copies
+// images beyond the reach of points have no part in sums and copies
 TEST(Grid, ImagesOutOfReachHaveNoPart)
 {
   for (int dim : {2, 3}) {

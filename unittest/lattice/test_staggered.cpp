@@ -14,10 +14,10 @@
 
 using namespace MPM_NS;
 
-namespace {
 /** Interpolated velocity at t of coefficients u(c, index), in spacings. */
 template <int dim>
-void velocity(const double *t, const std::function<double(int c, const int *index)> &u, double *v)
+static void velocity(const double *t, const std::function<double(int c, const int *index)> &u,
+                     double *v)
 {
   StaggeredWeights w;
   w.find<dim>(t);
@@ -32,13 +32,13 @@ void velocity(const double *t, const std::function<double(int c, const int *inde
 }
 
 /** Some number that depends on the arguments. */
-double noise(int a, const int *index)
+static double noise(int a, const int *index)
 {
   const double s = std::sin(12.9898 * a + 78.233 * index[0] + 37.719 * index[1] + 9.1 * index[2]);
   return 1000.0 * s - std::floor(1000.0 * s);
 }
 
-template <int dim> void linear_fields_are_exact()
+template <int dim> static void linear_fields_are_exact()
 {
   const double g[3][4] = {{0.3, -0.2, 0.5, 1.0}, {0.7, 0.4, -0.6, 2.0}, {-0.1, 0.9, 0.2, 3.0}};
   const auto u = [&](int c, const int *index) {
@@ -58,10 +58,9 @@ template <int dim> void linear_fields_are_exact()
   }
 }
 
-/** Divergence of the interpolated velocity, by differences that are exact for quadratic
- *  functions. */
+/** Divergence of the velocity, by differences that are exact for quadratic functions. */
 template <int dim>
-double divergence(const double *t, const std::function<double(int, const int *)> &u)
+static double divergence(const double *t, const std::function<double(int, const int *)> &u)
 {
   constexpr double step = 1e-3;
   double sum = 0.0;
@@ -75,7 +74,6 @@ double divergence(const double *t, const std::function<double(int, const int *)>
   }
   return sum;
 }
-}    // namespace
 
 TEST(Staggered, LinearFieldsAreExact)
 {

@@ -7,9 +7,8 @@
 // which nodes and faces of a surface are near.
 
 #include "mesh/background_mesh.h"
+#include "mesh/face_contact.h"
 #include "mesh/near_nodes.h"
-#include "mesh/passages.h"
-#include "mesh/triangle_gap.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 

@@ -453,14 +453,7 @@ SERIAL_TEST(Leaky, WindingNumbersAreThoseOfAllTriangles)
 {
   auto soup = both(ball(1.0, 3), torus(2.0, 0.3, 40));
   for (int k = 0; k < 700; k++) soup.pop_back();    // a piece of the torus
-  std::vector<Point> corners;
-  std::vector<std::array<int, 3>> triangles;
-  for (const auto &t : soup) {
-    const int n = (int) corners.size();
-    triangles.push_back({n, n + 1, n + 2});
-    for (const auto &x : t) corners.push_back(x);
-  }
-  const WindingNumber winding(corners, triangles);
+  const WindingNumber winding(soup);
   std::mt19937 random(4711);
   std::uniform_real_distribution<double> place(-2.5, 2.5);
   double largest = 0.0;

@@ -7,7 +7,6 @@
 // forces tell of a matrix: known solutions, iterations from theory.
 
 #include "small_systems.h"
-#include "solve/flexible_gmres.h"
 #include "solve/krylov.h"
 #include "solve/quasi_newton.h"
 #include "gtest/gtest.h"
