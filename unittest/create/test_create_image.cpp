@@ -575,6 +575,7 @@ SERIAL_TEST(Conduction, Checkerboard)
 
 static const char *const good_line = "create_points 1 image GRAY pixel 0.1\n";
 
+namespace {    // MPM_TEST has a Mistake, too
 PARAMETER_TEST(
     Mistake, IsExplained, Change,
     ValuesIn(mistakes_in(
@@ -629,6 +630,7 @@ PARAMETER_TEST(
   mistake.to = replaced(mistake.to, "GRAY", file.name);
   expect_explained(scene, mistake);
 }
+}    // namespace
 
 // longer than a periodic box
 TEST(Mistakes, AcrossItself)
