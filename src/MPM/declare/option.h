@@ -19,11 +19,11 @@
 //     using namespace option;
 //     Options o("fix mpm/dt");
 //     o.argument(number(fraction, "fraction", {0.0, 2.0, false, true}));
-//     o.add("every", {integer(look_every, "N", POSITIVE, "set the time step every this many
-//     steps")}); o.add("min", {number(dt_min, "dt", POSITIVE, "time", "smallest time
-//     step")}).standard("none"); o.add("max", {number(dt_max, "dt", POSITIVE, "time", "largest time
-//     step")}).standard("none"); o.refuse([=] { return OptionRules{{dt_max < dt_min, "min", "{min}
-//     is above max {max}"}}; }); return o;
+//     o.add("every", {integer(look_every, "N", POSITIVE, "number of steps between changes")});
+//     o.add("min", {number(dt_min, "dt", POSITIVE, "time", "shortest step")}).standard("none");
+//     o.add("max", {number(dt_max, "dt", POSITIVE, "time", "longest step")}).standard("none");
+//     o.refuse([=] { return OptionRules{{dt_max < dt_min, "min", "{min} is above max {max}"}}; });
+//     return o;
 //   }
 //
 // A declaration refers to the variables into which it reads values, and must not outlive them.

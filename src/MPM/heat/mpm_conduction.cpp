@@ -78,7 +78,7 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_stencil.h"
 #include "heat/mpm_heat_body.h"
-#include "material/heat.h"
+#include "material/material.h"
 #include "math_extra.h"
 
 #include <algorithm>

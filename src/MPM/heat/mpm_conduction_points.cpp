@@ -20,7 +20,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_stencil.h"
-#include "material/heat.h"
+#include "material/material.h"
 #include "math_extra.h"
 
 #include <algorithm>

@@ -40,7 +40,6 @@ struct Lattice {
   {
     for (int d = 0; d < 3; d++) x[d] = d < dim ? origin[d] + index[d] * h : 0.0;
   }
-  /** Volume of a cell; its area in 2d. */
   double cell_volume() const { return dim == 3 ? h * h * h : h * h; }
 };
 
@@ -99,7 +98,6 @@ class Grid {
   /** Bits of the nodes of a block whose indices are from low to high, inclusive. */
   uint64_t nodes_between(const Block &, const int low[3], const int high[3]) const;
 
-  /** Global node index of node n of a block. */
   void node_index(const Block &block, int n, int index[3]) const
   {
     if (lattice.dim == 3) {

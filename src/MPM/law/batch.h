@@ -83,7 +83,6 @@ struct Tangent {
   /** Tangent of Batch::heat, passed between the parts of a material. */
   alignas(64) double heat[9][BATCH];
 
-  /** Is column l not needed? */
   bool skips(int l) const { return plane && (l == 2 || l == 5 || l == 6 || l == 7); }
 };
 
@@ -114,7 +113,6 @@ struct Conduction {
   double across[2];     ///< conductivity along axes 2 and 3
   double axis[3][3];    ///< unit vectors along the axes
 
-  /** The largest conductivity. */
   double most() const
   {
     return orthotropic ? std::max(conductivity, std::max(across[0], across[1])) : conductivity;

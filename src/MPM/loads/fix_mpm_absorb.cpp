@@ -12,7 +12,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
 #include "field/mpm_guard.h"
-#include "material/heat.h"
+#include "material/material.h"
 
 #include "atom.h"
 #include "comm.h"

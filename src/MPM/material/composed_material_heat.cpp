@@ -11,7 +11,6 @@
 
 #include "law/damage.h"
 #include "material/composed_material.h"
-#include "material/heat.h"
 
 #include <algorithm>
 #include <cmath>

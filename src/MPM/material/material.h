@@ -74,8 +74,8 @@ class Material {
   virtual bool is_viscous() const = 0;
   /** Does it resist shear at rest? An equation of state does not, with or without a viscosity. */
   virtual bool is_solid() const = 0;
-  /** Does it carry no stress across the plane of its axes 1 and 2, so that only surfaces of elements
-   *  can use it? */
+  /** Does it carry no stress across the plane of its axes 1 and 2, so that only surfaces of
+   *  elements can use it? */
   virtual bool is_of_surfaces() const = 0;
 
   /** Does its stress depend on temperature, by expansion or by its parameters? Then it reports the
@@ -137,6 +137,18 @@ class Material {
   /** One-line description for the log: names and values of the parts. */
   virtual std::string describe() const = 0;
 };
+
+/** Heat per mass that a point of a conducting material has gained since the start, from its initial
+ *  temperature to the temperature in this history, including the heat of fusion of the molten part
+ *  [energy/mass]; negative if the point has cooled. */
+double heat_since_start(const Material &, const double *history);
+
+/** Does any conductivity of this material depend on temperature? */
+bool conductivity_varies_with_temperature(const Material &);
+
+/** As Material::conduction(), but with the conductivities averaged over the temperatures from low
+ *  to high. */
+Conduction mean_conduction(const Material &, const double *history, double low, double high);
 
 }    // namespace MPM_NS
 #endif

@@ -26,7 +26,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_physics.h"
 #include "heat/mpm_conduction.h"
-#include "material/heat.h"
+#include "material/material.h"
 #include "math/matrix.h"
 #include "meshgrid/fix_mpm_mesh.h"
 #include "meshgrid/fix_mpm_mesh_contact.h"

@@ -9,8 +9,8 @@
 #ifndef MPM_TRANSFER_KERNELS_H
 #define MPM_TRANSFER_KERNELS_H
 
-// Interface of the hot kernels. The files transfer/*_isa.cpp are compiled once for each instruction set;
-// every compilation fills one MPMKernels table and MPMKernels::select() picks one at run time.
+// Interface of the hot kernels. The files transfer/*_isa.cpp are compiled once for each instruction
+// set; every compilation fills one MPMKernels table and MPMKernels::select() picks one at run time.
 // Nothing here knows about LAMMPS.
 
 #include "transfer/shape.h"
@@ -34,8 +34,9 @@ constexpr bool is_mls(Shape shape, Transfer transfer)
 {
   return shape_constants[shape].inv_moment > 0.0 && (transfer == APIC || transfer == AFLIP);
 }
-/** The affine matrix is the velocity gradient, too. That of domains with APIC is not: it is the fit with the
- *  second moment of the weights, which depends on the position and the shape of the domain. */
+/** The affine matrix is the velocity gradient, too. That of domains with APIC is not: it is the fit
+ *  with the second moment of the weights, which depends on the position and the shape of the
+ *  domain. */
 constexpr bool is_gradient(Shape shape, Transfer transfer)
 {
   return is_affine(transfer) && (transfer == TPIC || !has_domain(shape));
@@ -130,18 +131,19 @@ struct TransferStep {
 /** Transfers between the points [first,last) of one block and its tile.
  *
  *  base: node index of tile entry (0,0,0), which is the block's first base node minus one per axis.
- *  A base node of a point is floor((x - origin)/h - s), s = 0, 1/2, 1 for linear, quadratic (GIMP), cubic,
- *  and 2 floor((x - origin)/(2 h)) for BERNSTEIN.
- *  In 2d, z is ignored, and tiles and base have two axes (base[2] unused).
- *  Domains: base is the first node of the block before; each corner has a base node (s = 0), and all
- *  of them and their next nodes must be in the tile, which has the block's neighbors on all sides.
+ *  A base node of a point is floor((x - origin)/h - s), s = 0, 1/2, 1 for linear, quadratic (GIMP),
+ *  cubic, and 2 floor((x - origin)/(2 h)) for BERNSTEIN. In 2d, z is ignored, and tiles and base
+ *  have two axes (base[2] unused). Domains: base is the first node of the block before; each corner
+ *  has a base node (s = 0), and all of them and their next nodes must be in the tile, which has the
+ *  block's neighbors on all sides.
  *
  *  Tile entry layout, 8-byte reals:
  *   merged (4 reals): on P2G px py pz m, momentum including dt * force; on G2P vx vy vz m.
  *   split  (8 reals): on P2G px py pz m | fx fy fz 0; on G2P vx vy vz m | vx_old vy_old vz_old 0.
  *  Align tiles to 64 bytes; other addresses work, more slowly.
  *
- *  box: [6] lowest and highest tile index of base nodes (x,y,z low; x,y,z high); widened, not reset.
+ *  box: [6] lowest and highest tile index of base nodes (x,y,z low; x,y,z high); widened, not
+ *  reset.
  */
 using P2G = void (*)(const PointRows &, const TransferStep &, int first, int last,
                      const int base[3], double *tile, int box[6]);
@@ -153,15 +155,16 @@ using P2G = void (*)(const PointRows &, const TransferStep &, int first, int las
 using G2P = int (*)(const PointRows &, const TransferStep &, int first, int last, const int base[3],
                     const double *tile, double *L);
 
-/** Moves the box of a tile between tile and node array, all reals of an entry.
- *  flush: adds the tile to the nodes and clears that part of the tile; load: fills it from the nodes.
- *  nodes: [nblocks][64][nreal], node index in a block (ix*4+iy)*4+iz in 3d, ix*8+iy in 2d.
- *  slot: [27] block index of the neighbors at [9*(bx+1)+3*(by+1)+(bz+1)], b = -1,0,1 (2d: bz = 0);
- *  those that the box and its stencil touch must be valid.
- *  box: as filled by P2G; the stencil (order nodes upward) is added here. */
+/** Moves the box of a tile between tile and node array, all reals of an entry. flush: adds the tile
+ *  to the nodes and clears that part of the tile; load: fills it from the nodes. nodes:
+ *  [nblocks][64][nreal], node index in a block (ix*4+iy)*4+iz in 3d, ix*8+iy in 2d. slot: [27]
+ *  block index of the neighbors at [9*(bx+1)+3*(by+1)+(bz+1)], b = -1,0,1 (2d: bz = 0); those that
+ *  the box and its stencil touch must be valid. box: as filled by P2G; the stencil (order nodes
+ *  upward) is added here. */
 using TileIO = void (*)(double *tile, double *nodes, const int slot[27], const int box[6]);
 
-/** All kernels of one dimension, shape, and transfer. Null pointers: not available in this combination. */
+/** All kernels of one dimension, shape, and transfer. Null pointers: not available in this
+ *  combination. */
 struct TransferKernels {
   int nreal;             ///< reals of a tile entry and node record: 4 merged, 8 split
   int margin;            ///< nodes of a tile in front of the block, see P2G
@@ -183,10 +186,10 @@ struct TransferKernels {
  *  Graph. 36 (2017) 222) with 4 modes in 2d, 8 in 3d. The constant and the linear ones are those of
  *  APIC.
  *
- *  With weights w of quadratic or cubic B-splines and distances d of nodes from the point, moments along
- *  each axis are sum w = 1, sum w d = 0, sum w d^2 = D, whatever the position. Products of 1 and d over
- *  the axes are therefore orthogonal, and the best coefficient of a mode s is sum_i w_i s(d_i) v_i
- *  over sum_i w_i s(d_i)^2 = D or D^2 or D^3.
+ *  With weights w of quadratic or cubic B-splines and distances d of nodes from the point, moments
+ *  along each axis are sum w = 1, sum w d = 0, sum w d^2 = D, whatever the position. Products of 1
+ *  and d over the axes are therefore orthogonal, and the best coefficient of a mode s is sum_i w_i
+ *  s(d_i) v_i over sum_i w_i s(d_i)^2 = D or D^2 or D^3.
  */
 struct PolyKernels {
   /** Adds the momentum of the modes Q [n][poly_size] to the tile, to which P2G has gone. */
@@ -214,8 +217,9 @@ struct MPMKernels {
   /** The same in the total frame: nodes are places of the reference configuration. C and L are
    *  gradients with respect to the reference position, internal forces are -V0 P grad N, and G2P
    *  moves a point from its row of from. G2P returns non-zero for positions that are not finite.
-   *  Fast kernels are for PIC, FLIP, APIC with B-splines and BERNSTEIN; domains (split) have p2g_force and g2p_gradient alone.
-   *  The other table has those of the total frame for BERNSTEIN, too. */
+   *  Fast kernels are for PIC, FLIP, APIC with B-splines and BERNSTEIN; domains (split) have
+   *  p2g_force and g2p_gradient alone. The other table has those of the total frame for BERNSTEIN,
+   *  too. */
   TransferKernels (*transfer_total)(int dim, Shape, Transfer, bool split);
 
   /** The modes of polypic, for QUADRATIC and CUBIC; nreal: of the records of nodes. */

@@ -32,8 +32,8 @@ constexpr int SPARE_ROWS = 8;
 struct ScalarStencil {
   int n = 0;
   int place[BATCH];    ///< first node in the tile
-  // Weights along each axis, and the factors that replace them in slopes; for the last axis also a row for
-  // each point. All entries must be numbers, also behind the last point.
+  // Weights along each axis, and the factors that replace them in slopes; for the last axis also a
+  // row for each point. All entries must be numbers, also behind the last point.
 
   alignas(64) double w[3][4][BATCH + SPARE_ROWS] = {};
   alignas(64) double slope[3][4][BATCH + SPARE_ROWS] = {};
@@ -59,12 +59,12 @@ struct ScalarSource {
   const double *factors;
 };
 
-/** Transfers of one number between the points of a batch and the tile of their block. Tiles are those of
- *  the other transfers, see kernels.h, except that an entry is one real. Each entry of a tile must be a
- *  number, whether or not a point reaches it.
+/** Transfers of one number between the points of a batch and the tile of their block. Tiles are
+ *  those of the other transfers, see kernels.h, except that an entry is one real. Each entry of a
+ *  tile must be a number, whether or not a point reaches it.
  *
- *  Points have rows of four reals: one for the slopes along each axis (z is not used in 2d), and one for
- *  the weights. */
+ *  Points have rows of four reals: one for the slopes along each axis (z is not used in 2d), and
+ *  one for the weights. */
 struct ScalarKernels {
   /** The stencils of the points [0,n), n <= BATCH. box: as for P2G, or null. */
   void (*prepare)(const PointRows &, const TransferStep &, int n, const int base[3], SlopeKind,
@@ -75,9 +75,9 @@ struct ScalarKernels {
   void (*add_times)(const ScalarStencil &, const ScalarSource &, double *tile);
   /** tile += sum over points of N_ip q[p]. */
   void (*add_values)(const ScalarStencil &, const double *q, double *tile);
-  /** q[4p+3] = sum over nodes of N_ip tile_i, and q[4p ... 4p+2] = sum over nodes of slope_ip tile_i. There
-   *  must be memory for SPARE_ROWS rows behind the last one, which receive arbitrary values; the same holds
-   *  for get_values(). */
+  /** q[4p+3] = sum over nodes of N_ip tile_i, and q[4p ... 4p+2] = sum over nodes of slope_ip
+   *  tile_i. There must be memory for SPARE_ROWS rows behind the last one, which receive arbitrary
+   *  values; the same holds for get_values(). */
   void (*get)(const ScalarStencil &, const double *tile, double *q);
   void (*get_values)(const ScalarStencil &, const double *tile, double *q);
   /** As TileIO, with one real for each node. */
@@ -85,8 +85,8 @@ struct ScalarKernels {
   /** Divides the sums of n nodes by their weights; zero where the weight is zero. */
   void (*divide)(double *sums, const double *weights, std::size_t n);
 
-  /** The kernels that belong to a table of transfers. Shapes with domains (CPDI) use the plain loops in all
-   *  tables. */
+  /** The kernels that belong to a table of transfers. Shapes with domains (CPDI) use the plain
+   *  loops in all tables. */
   static ScalarKernels select(const MPMKernels &, int dim, Shape);
 };
 

@@ -9,17 +9,17 @@
 #ifndef MPM_TRANSFER_SHAPE_H
 #define MPM_TRANSFER_SHAPE_H
 
-// The functions of points along one axis, and which shape has which: all that depends on the shape of a
-// point, but for the domains of transfer/cpdi.h.
+// The functions of points along one axis, and which shape has which: all that depends on the shape
+// of a point, but for the domains of transfer/cpdi.h.
 
 #include <array>
 #include <tuple>
 
 namespace MPM_NS {
 
-/** Smallest fraction of a point in its cell with linear functions. A point exactly on a node has the
- *  weight 0 but the full gradient at the next node, where its force would act on nothing and the
- *  momentum be lost. A position that is wrong by the last bit of a cell is not. */
+/** Smallest fraction of a point in its cell with linear functions. A point exactly on a node has
+ *  the weight 0 but the full gradient at the next node, where its force would act on nothing and
+ *  the momentum be lost. A position that is wrong by the last bit of a cell is not. */
 constexpr double SMALLEST_FRACTION = 0x1p-52;
 
 /** Uniform B-spline of order 1 (linear), 2 (quadratic) or 3 (cubic) along one axis.
@@ -45,8 +45,8 @@ template <int ORDER> struct BSpline {
   static constexpr double shift = 0.5 * (ORDER - 1);    ///< distance of base node and its interval
   static constexpr bool has_size = false, has_domain = false;    ///< of the points
 
-  /** Inverse of the second moment sum w (x_i - x)^2, which does not depend on the position. Where it
-   *  does, as for linear functions, the affine form is not used (value 0). */
+  /** Inverse of the second moment sum w (x_i - x)^2, which does not depend on the position. Where
+   *  it does, as for linear functions, the affine form is not used (value 0). */
   static constexpr double inv_moment = ORDER == 2 ? 4.0 : (ORDER == 3 ? 3.0 : 0.0);
 
   /** Weights of the nodes for the fraction f. */
@@ -94,11 +94,11 @@ template <int ORDER> struct BSpline {
 
 /** Quadratic Bernstein polynomials along one axis (V.P. Nguyen, A. de Vaucorbeil, S. Bordas, The
  *  Material Point Method, Springer 2023). A cell has two node spacings, from an even node over an
- *  odd one to the next even one, and these are the nodes that its points reach: the base node is
- *  2 floor(x/2), and the fraction f = x/2 - floor(x/2). The functions are not negative and sum to
+ *  odd one to the next even one, and these are the nodes that its points reach: the base node is 2
+ *  floor(x/2), and the fraction f = x/2 - floor(x/2). The functions are not negative and sum to
  *  one; with the nodes as control points, sum w_i x_i = x. Derivatives with respect to the position
- *  in node spacings are those of the quadratic B-spline with this f; they jump from cell to cell. The
- *  second moment depends on the position. */
+ *  in node spacings are those of the quadratic B-spline with this f; they jump from cell to cell.
+ *  The second moment depends on the position. */
 struct Bernstein : BSpline<2> {
   static constexpr int cell = 2;
   static constexpr double shift = 0.0, inv_moment = 0.0;
@@ -126,10 +126,10 @@ namespace gimp {
 
 /** Function of a point of finite size along one axis: the mean of the linear function over the
  *  interval [x - s h, x + s h] that the point covers (S.G. Bardenhagen, E.M. Kober, Comput. Model.
- *  Eng. Sci. 5 (2004) 477, with characteristic functions of boxes). Half sizes s in units of the node
- *  spacing are above 0, where it is the linear function, and at most 1/2, where it is the quadratic
- *  B-spline; so it reaches no more than the nodes of the latter, and base node and fraction are as
- *  for BSpline<2>.
+ *  Eng. Sci. 5 (2004) 477, with characteristic functions of boxes). Half sizes s in units of the
+ *  node spacing are above 0, where it is the linear function, and at most 1/2, where it is the
+ *  quadratic B-spline; so it reaches no more than the nodes of the latter, and base node and
+ *  fraction are as for BSpline<2>.
  *
  *  With the distance c = f - 1/2 from the middle node, the part of the interval that is above the
  *  middle node is from max(0, c - s) to max(0, c + s), and the function of the node above is the
