@@ -174,7 +174,7 @@ TEST(Hertz, OnOneLattice)
         const int i = r.lmp->atom->map(tag);
         const double x = r.x()[i][0];
         if (x > s) continue;
-        const auto stress = r.stress(i);
+        const auto stress = r.cauchy(i);
         force -= stress[1] * x;
         first -= stress[1] * x * x * x;
       }

@@ -17,9 +17,9 @@ using namespace MPM_TEST;
 static std::string body(int dim, const std::string &options, const std::string &law)
 {
   return box(dim, "lj", "f f f", "-10 30 -10 20 -10 20", 1, 0.2) +
-      body(strprintf("block 2 6 2 5 %s", dim == 2 ? "INF INF" : "2 4"),
-           strprintf("density 1.0 %s", law.c_str()),
-           strprintf("0.5 frame total %s", options.c_str()));
+      MPM_TEST::body(strprintf("block 2 6 2 5 %s", dim == 2 ? "INF INF" : "2 4"),
+                     strprintf("density 1.0 %s", law.c_str()),
+                     strprintf("0.5 frame total %s", options.c_str()));
 }
 
 // a body without stiffness in simple shear to 3, spinning, and stretched: F = (I + dt L)^n to
@@ -164,13 +164,13 @@ SERIAL_TEST(ReferenceUpdate, NoLightNodesNoChange)
   for (const char *rest : {"transfer apic", "transfer apic scheme musl", "transfer apic scheme usf",
                            "transfer flip 1.0", "transfer flip 1.0 locking fbar"}) {
     const auto state = [&](const std::string &more) {
-      Scene run(
-          plane("lj", "p p", "0 8 0 8", 1, 0.4) +
-          body("box", "density 1.0 neohookean 10.0 0.3",
-               "1.0 frame total reference update 1.2 shape linear " + std::string(rest) + more) +
-          "variable vx atom 1.5*sin(2*PI*y/8)\nvariable vy atom 0.7*sin(2*PI*x/8)\n"
-          "velocity all set v_vx v_vy 0\n"
-          "timestep 0.05\nrun 60\n");
+      Scene run(plane("lj", "p p", "0 8 0 8", 1, 0.4) +
+                MPM_TEST::body("box", "density 1.0 neohookean 10.0 0.3",
+                               "1.0 frame total reference update 1.2 shape linear " +
+                                   std::string(rest) + more) +
+                "variable vx atom 1.5*sin(2*PI*y/8)\nvariable vy atom 0.7*sin(2*PI*x/8)\n"
+                "velocity all set v_vx v_vy 0\n"
+                "timestep 0.05\nrun 60\n");
       double R = 0.0;
       for (int i = 0; i < run.n(); i++) R = std::max(R, std::abs(run.reference_F()[i][1]));
       EXPECT_GT(R, 0.1);    // there were updates
@@ -196,8 +196,9 @@ SERIAL_TEST(ReferenceUpdate, ImpactWithLinearFunctions)
   for (const auto &[options, sound] : cases) {
     SCOPED_TRACE(options);
     Scene run(plane("lj", "f f", "-8 24 0 16", 1, 0.4) +
-              body("block 4.3 9.3 0 8 INF INF", "density 1.0 eos linear 20.0 strength j2 10.0 1.0",
-                   "1.0 frame total reference update 1.2 shape linear " + std::string(options)) +
+              MPM_TEST::body(
+                  "block 4.3 9.3 0 8 INF INF", "density 1.0 eos linear 20.0 strength j2 10.0 1.0",
+                  "1.0 frame total reference update 1.2 shape linear " + std::string(options)) +
               "fix floor all mpm/boundary ylo slip\nvelocity all set 0 -1.5 0\n"
               "compute e all mpm/energy\nthermo_style custom step c_e\nfix dt all mpm/dt 0.5\n");
     const int before = run.lmp->error->get_numwarn();

@@ -100,6 +100,12 @@ inline double fall(Scene &run, double t)
   return over_ranks(most) / (9.81 * run.lmp->force->ftm2v * t);
 }
 
+/** Runs to the time end, with steps that are this part of the stable limit. */
+inline void run_until(Scene &run, double end, double part = 0.5)
+{
+  run.commands(strprintf("fix dt all mpm/dt %g until %.17g\nrun 10000000\n", part, end));
+}
+
 }    // namespace MPM_TEST
 
 #endif

@@ -70,12 +70,6 @@ inline std::string load(int n, double q, double ramp)
                 ramp, ramp) +
       "variable fy equal -v_q*lx/count(top)\nfix load top addforce 0 v_fy 0\n";
 }
-/** Runs to the time end, with steps that are this part of the stable limit. */
-inline void run_to(Scene &run, double end, double part = 0.5)
-{
-  run.commands(strprintf("fix dt all mpm/dt %g until %.17g\nrun 1000000\n", part, end));
-}
-
 /** Terzaghi's pressure at depth z below the drained top of a column of height 1, over the first. */
 inline double terzaghi(double z, double T)
 {
@@ -119,7 +113,7 @@ inline double terzaghi_in_space(const char *shape, double width, double Kf, cons
       "variable load equal -1e4*0.5*(1-cos(PI*v_ramp))*lx*ly/count(top)\n"
       "fix load top addforce 0 0 v_load\n");
   Water water(run);
-  run_to(run, 0.2 / c + 0.005);
+  run_until(run, 0.2 / c + 0.005);
   return measured(strprintf("%s, rms", shape),
                   difference_from_terzaghi(run, water, LOAD / (1.0 + MODULUS * 0.4 / Kf), 0.2, 2) /
                       LOAD);
@@ -136,7 +130,7 @@ inline double scatter_of_pressure(double Kf, double k, const std::string &option
              SOIL) +
       load(n, LOAD, 0.03));
   Water water(run);
-  run_to(run, 0.06);
+  run_until(run, 0.06);
   const double c = k / 9810.0 / (1.0 / MODULUS + 0.4 / Kf), p0 = LOAD / (1 + MODULUS * 0.4 / Kf);
   const double *const p = water.pressures();
   double sum = 0.0, square = 0.0, count = 0.0;
@@ -180,7 +174,7 @@ inline void expect_water_is_kept_by(const std::string &permeability, const std::
  *  gradient i of the water from below and with the conductivity k. */
 inline void expect_seepage(Scene &run, double i, double k)
 {
-  run_to(run, 1.0);
+  run_until(run, 1.0);
   const double *const flows = run.fix_vector("water", 7);
   EXPECT_NEAR(measured(strprintf("gradient %g, flux", i), flows[2] / (0.4 * k * i)), 1.0, 0.01);
   EXPECT_NEAR(flows[6] / flows[2], -1.0, 1e-3);
@@ -228,7 +222,7 @@ inline Consolidation consolidate(int n, const std::string &options, double top, 
             load(n, q, ramp));
   Water water(run);
   const double T = 0.2, p0 = q / (1.0 + MODULUS * storage);
-  run_to(run, T / c + 0.5 * ramp);
+  run_until(run, T / c + 0.5 * ramp);
   const double rms = difference_from_terzaghi(run, water, p0, T);
   double all = 0.0;
   for (int i = 0; i < run.n(); i++) all += water.pressures()[i] / run.n();

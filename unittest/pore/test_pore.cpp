@@ -235,7 +235,7 @@ SERIAL_TEST(LargeStrain, Consolidation)
             load(n, 0.5, 0.004));
   Water water(run);
   run.commands("compute n all mpm/atom porosity\n");
-  run_to(run, 0.202);
+  run_until(run, 0.202);
   double volume = 0.0;
   auto *compute = run.per_atom("n");
   for (int i = 0; i < run.n(); i++) {
@@ -335,7 +335,7 @@ SERIAL_TEST(Flow, LiftsAboveTheCriticalGradient)
                            "fix water"));
     double place[2];
     for (const bool late : {false, true}) {
-      run_to(run, late ? 0.6 : 0.4);
+      run_until(run, late ? 0.6 : 0.4);
       place[late] = 0.0;
       for (int k = 0; k < run.n(); k++) place[late] += run.x()[k][1] / run.n();
     }
@@ -395,11 +395,11 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
     Scene run(above_floor(wall, 0.0, offset, "density 1990 linear 1e7 0.3",
                           face ? "0 0.4 0 1" : "0 0.4 -0.5 1") +
               "\n");
-    run_to(run, 0.6);
+    run_until(run, 0.6);
     run.set_velocity([](const double *, double *v) {
       v[0] = 5.0;
     });
-    run_to(run, 0.7);
+    run_until(run, 0.7);
     EXPECT_NEAR(measured(strprintf("%s, offset %g", wall, offset),
                          (5.0 - mean_velocity(run, 0)) / (0.1 * slower)),
                 1.0, 0.01);
@@ -414,7 +414,7 @@ SERIAL_TEST(Walls, HeaveAtTheCriticalGradient)
       if (offset > 0.0 && std::fabs(i - 0.99) > 0.05) continue;
       Scene run(above_floor("ylo separate", i, offset, "density 1990 linear 1e8 0.3", "0 0.4 0 1") +
                 strprintf("ylo pressure %.17g\n", 9810 * (1.0 + i)));
-      run_to(run, 0.4);
+      run_until(run, 0.4);
       double lowest = 1.0;
       for (int k = 0; k < run.n(); k++) lowest = std::min(lowest, run.x()[k][1] - 0.025);
       measured(strprintf("offset %g, gradient %g, gap", offset, i), lowest);
@@ -507,7 +507,7 @@ SERIAL_TEST(Units, FrictionInMetal)
               "fix g all gravity 0.002 vector 0 -1 0\n"
               "fix water all mpm/pore 2e5 0.5 1.0 soil m 0.4 constant 1e-9 yhi pressure 0 "
               "geostatic 0.5 100\nvelocity all set 5 0 0\n");
-    run_to(run, 1.0);
+    run_until(run, 1.0);
     const double slower = 0.3 * 0.5 * 0.002 / 1.0364269e-4;
     EXPECT_NEAR(measured("deceleration", (5.0 - mean_velocity(run, 0)) / slower), 1.0, 0.01);
   }

@@ -73,9 +73,9 @@ Motion of_soil(Scene &run)
  *  be as much below the face of the box. */
 double friction(Scene &run, double slope, double coefficient)
 {
-  run_to(run, 0.6);
+  run_until(run, 0.6);
   const auto before = of_soil(run);
-  run_to(run, 0.7);
+  run_until(run, 0.7);
   const double cosine = 1.0 / std::sqrt(1.0 + slope * slope), low = before.lowest - 0.025,
                high = before.highest + 0.025;
   EXPECT_LT(std::fabs(low), 0.03);
@@ -105,7 +105,7 @@ SERIAL_TEST(Contact, FrictionIsThatOfGrains)
 SERIAL_TEST(Contact, SlopeHolds)
 {
   Scene run(on_body("coulomb 0.5", 0.9 * 0.5 * SUBMERGED, 0.0));
-  run_to(run, 0.7);
+  run_until(run, 0.7);
   EXPECT_NEAR(measured("velocity over that of sliding freely",
                        of_soil(run).v[0] / (9.81 * 0.45 * SUBMERGED * 0.7)),
               0.0, 0.005);
@@ -223,7 +223,7 @@ SERIAL_TEST(Plate, BearsTheTotalStress)
         stress += sums[1] / sums[2];
         n++;
       });
-      run_to(run, 0.1);
+      run_until(run, 0.1);
       const std::string name = strprintf("%s, offset %g: ", kind, offset);
       EXPECT_NEAR(measured(name + "force over load", force / n / (1e4 * AREA)), 1.0, 1e-3);
       // points off the middle of cells have means that are not quite integrals
@@ -249,7 +249,7 @@ double friction(const std::string &water, double offset)
     along -= run.fix("tool")->compute_vector(9);
     down += run.fix("tool")->compute_vector(11);
   });
-  run_to(run, 0.08);
+  run_until(run, 0.08);
   return along / down / 0.3;
 }
 
@@ -287,7 +287,7 @@ SERIAL_TEST(Plate, ConsolidatesTheSoil)
                   4 * h * h));
     Water water(run);
     for (const double T : {0.1, 0.5}) {
-      run_to(run, T / c + 0.5 * ramp);
+      run_until(run, T / c + 0.5 * ramp);
       double left = 0.0, exact = 1.0;
       for (int i = 0; i < run.n(); i++) left += water.pressures()[i] / run.n();
       for (int m = 0; m < 200; m++) {
@@ -312,7 +312,7 @@ SERIAL_TEST(Plate, ClosesTheSurface)
                               bodies,
                           "separate force 0 0 v_f hold x y rx ry rz", 0.3) +
               strprintf("variable f equal -%g*v_q\n", 1e4 * AREA));
-    run_to(run, 0.06);
+    run_until(run, 0.06);
     const double came = measured(bodies, run.fix("water")->compute_scalar());
     if (bodies[0] == 'o')
       EXPECT_LT(came, -1e-6);
@@ -340,7 +340,7 @@ TEST(Wall, ClosesTheSurface)
               "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 1e-3 free pressure 0 "
               "bodies " +
               bodies + "\n");
-    run_to(run, 0.02);
+    run_until(run, 0.02);
     const double came = measured(bodies, run.fix("water")->compute_scalar());
     if (bodies[0] == 'o')
       EXPECT_LT(came, -1e-6);

@@ -99,7 +99,7 @@ PARAMETER_TEST(
                nu_u = (3.0 * Ku - 2.0 * clay.shear()) / (2.0 * (3.0 * Ku + clay.shear()));
   const double p0 = F * B * (1.0 + nu_u) / 3.0;
   const auto pressure = [&](double T) {
-    run_to(run, (T + 0.5 * ramp) / c, LONG);
+    run_until(run, (T + 0.5 * ramp) / c, LONG);
     return at_origin(water, 0.5 * h) / p0;
   };
   double peak = 0.0;
@@ -128,7 +128,7 @@ PARAMETER_TEST(Cryer, PressureRisesFirst, const char *, Values("", " every auto"
             clay.damping(0.125 * h * h * h));
   Water water(run);
   const auto pressure = [&](double T) {
-    run_to(run, T / c, LONG);
+    run_until(run, T / c, LONG);
     return 1.0 + at_origin(water, 0.5 * h) / P;
   };
   double peak = 0.0;
@@ -304,7 +304,7 @@ PARAMETER_TEST(
   Water water(run);
   run.commands("compute n all mpm/atom porosity\n");
   for (const auto &at : exact) {
-    run_to(run, at[0] + 0.5 * ramp, LONG);
+    run_until(run, at[0] + 0.5 * ramp, LONG);
     double volume = 0.0;
     auto *compute = run.per_atom("n");
     for (int i = 0; i < run.n(); i++) {
@@ -374,7 +374,7 @@ SERIAL_TEST(SelfWeight, Consolidates)
       double volume = 0.0;
       constexpr int PARTS = 50;
       for (int k = 1; k <= PARTS; k++) {
-        run_to(run, (from + (T - from) * k / PARTS) / c, LONG);
+        run_until(run, (from + (T - from) * k / PARTS) / c, LONG);
         volume = volumes(run, Kf, after);
         const double *const now = water.pressures();
         for (int i = 0; i < run.n(); i++) {

@@ -172,7 +172,7 @@ SERIAL_TEST(LargeStrain, Consolidation)
                    "density 1e-3 linear 1.0 0.0") +
             load(n, 0.5, 0.004));
   Water water(run);
-  run_to(run, 0.202);
+  run_until(run, 0.202);
   double volume = 0.0;
   for (int i = 0; i < run.n(); i++) volume += run.points().jacobian(i) * run.lmp->atom->vfrac[i];
   EXPECT_NEAR(measured("settlement", 1.0 - volume * n / 4.0) / 0.183627, 1.0, 0.02);

@@ -105,7 +105,7 @@ SERIAL_TEST(Steady, Weight)
              "forchheimer number 1e10",
              "density 2000 linear 1e9 0.0", 1.0, 0.2, "ylo yhi"),
       "fix water", "fix g all gravity 10.0 vector 0 -1 0\nvariable p atom 1e4*(1-y)\nfix water"));
-  run_to(run, 0.4);
+  run_until(run, 0.4);
   EXPECT_NEAR(measured("flow", run.fix_vector("water", 7)[2] / (0.4 * flow_by(-1e4, 1e10))), 1.0,
               1e-3);
 }

@@ -28,13 +28,13 @@ double pressure(const std::string &scene)
 {
   Scene run(scene + "compute T all mpm/atom temperature\n");
   Water water(run);
-  run_to(run, 0.02);
+  run_until(run, 0.02);
   double sum = 0.0, n = 0.0, before = water.mass();
   run.each_step([&](double **) {
     for (int i = 0; i < run.n(); i++) sum += water.pressures()[i];
     n += run.n();
   });
-  run_to(run, 0.03);
+  run_until(run, 0.03);
   EXPECT_NEAR(water.mass() / before, 1.0, 1e-13);
   auto *const T = run.per_atom("T");
   double warmth = 0.0;

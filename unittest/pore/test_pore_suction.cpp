@@ -46,10 +46,6 @@ std::string column(int n, const std::string &water,
       "fix m all mpm/material density " + material + "\nfix floor all mpm/boundary ylo slip\n" +
       "fix g all gravity 9.81 vector 0 -1 0\n" + "fix water all mpm/pore " + water + "\n";
 }
-void run_to(Scene &run, double end, double share = 0.5)
-{
-  run.commands(strprintf("fix dt all mpm/dt %g until %.17g\nrun 10000000\n", share, end));
-}
 
 /** Volume of water of all points by saturation and porosity, at its density without pressure. */
 double water_in_pores(Scene &run, double K)
@@ -146,7 +142,7 @@ SERIAL_TEST(Infiltration, SrivastavaAndYeh)
       double worst = 0.0;
       for (const double t : {0.0, 0.2, 0.5, 1.0, 4.0}) {
         if (rain && t > 0.2) continue;
-        run_to(column_of, 0.1 + t);
+        run_until(column_of, 0.1 + t);
         const auto p = values(column_of, "pore");
         double sum = 0.0;
         for (int i = 0; i < column_of.n(); i++) {
@@ -179,8 +175,8 @@ SERIAL_TEST(Infiltration, IntoDrySand)
                      "2000 linear 1e8 0.0"));
     run.commands("timestep 1e-9\nrun 0\n");
     const double before = mass(run), water = water_in_pores(run, 2.2e9);
-    run_to(run, 0.01, 0.1);    // the jump at the surface fills cells within some steps
-    run_to(run, 0.864);
+    run_until(run, 0.01, 0.1);    // the jump at the surface fills cells within some steps
+    run_until(run, 0.864);
     const double area = 2.0 / n, came = run.fix("water")->compute_scalar();
     EXPECT_NEAR(measured("mass of water", (mass(run) - before - 1000.0 * came) / before), 0.0,
                 1e-13);
@@ -308,7 +304,7 @@ SERIAL_TEST(Walls, FrictionIsThatOfGrains)
                       "vangenuchten 3e-4 1.6 saturation 0.1 %g bishop %s geostatic 0.5 %g\n",
                       Ss, bishop, table) +
             "velocity all set 5 0 0\n");
-        run_to(run, T);
+        run_until(run, T);
         const auto s = run.sums();
         EXPECT_NEAR(measured(strprintf("%s, Ss %g, table %g, spacing %g: over %.4f m/s^2", bishop,
                                        Ss, table, h, slower),
@@ -351,11 +347,11 @@ SERIAL_TEST(Surface, RainAndSeepage)
               "timestep 1e-9\nrun 0\n");
     const double area = 0.1, before = mass(run);
     const int part = top[0] == 'y' ? 3 : 6;
-    run_to(run, 0.01);
+    run_until(run, 0.01);
     const double *flow = run.fix_vector("water", 7);
     EXPECT_NEAR(measured("rain that goes in at first", flow[part] / area), 0.3, 0.01);
     EXPECT_EQ(flow[2], 0.0);
-    run_to(run, 6.0);
+    run_until(run, 6.0);
     flow = run.fix_vector("water", 7);
     EXPECT_NEAR(measured("rain that goes in at last", flow[part] / area) / K, 1.0, 0.02);
     EXPECT_NEAR(measured("seepage", flow[2] / area) / K, -1.0, 0.02);

@@ -443,6 +443,11 @@ template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt,
   finish(update_points);
 }
 
+void MPMFlowSolids::deform(const double *velocity, double dt, double viscosity)
+{
+  cells.lattice.dim == 2 ? strain<2>(velocity, dt, viscosity) : strain<3>(velocity, dt, viscosity);
+}
+
 /* ----------------------------------------------------------------------
    Shares of solid in the volume of points in boxes of one spacing around corners of cells. The
    lattice has means of shears over these boxes.

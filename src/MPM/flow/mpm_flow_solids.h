@@ -54,11 +54,7 @@ class MPMFlowSolids : protected Pointers {
   /** Updates deformation and stress of the points to the end of a step of duration dt with these
    *  velocities [cell][dim]; to be called before the points move. Stops with an error if a point is
    *  turned inside out. */
-  void deform(const double *velocity, double dt, double viscosity)
-  {
-    cells.lattice.dim == 2 ? strain<2>(velocity, dt, viscosity)
-                           : strain<3>(velocity, dt, viscosity);
-  }
+  void deform(const double *velocity, double dt, double viscosity);
   /** Replaces the pressure in the stress [6] of a law by the pressure p of the flow. In 2d, where
    *  the solid is held at constant thickness, the pressure of the flow is minus the mean of the two
    *  normal stresses in the plane. */
