@@ -6,10 +6,10 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* In explicit steps each node that bodies share is in contact by itself: its velocities are those of
-   both bodies, also one and two layers of nodes inside. In the balance of forces, this would make a
-   soft body next to a hard one about half a cell thinner. Here, nodes are tied together along lines
-   through the interface, by a single condition
+/* In explicit steps each node that bodies share is in contact by itself: its velocities are those
+   of both bodies, also one and two layers of nodes inside. In the balance of forces, this would
+   make a soft body next to a hard one about half a cell thinner. Here, nodes are tied together
+   along lines through the interface, by a single condition
 
      sum_k a_k n_k . (u_a,k - u_b,k) = g,   sum_k a_k = 1
 

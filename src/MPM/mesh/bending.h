@@ -39,8 +39,8 @@ constexpr int FEW_NODES = 10;
 
 /** Instead of the resistance above third order, the curvature can change linearly in a triangle, as
  *  in a discrete Kirchhoff triangle (J.L. Batoz, K.J. Bathe, L.W. Ho, Int. J. Numer. Methods Eng.
- *  15 (1980) 1771), with slopes at the corners from the nodes of the patch. These are exact only for
- *  surfaces of second order and exaggerate the change: this part of its energy resists. */
+ *  15 (1980) 1771), with slopes at the corners from the nodes of the patch. These are exact only
+ *  for surfaces of second order and exaggerate the change: this part of its energy resists. */
 constexpr double LINEAR_PART = 0.5;
 
 /** Curvature of a triangle from the slopes across its edges, which the triangles on both sides of
