@@ -39,7 +39,7 @@ std::string channel(int dim, int axis, int side, const std::string &options,
       "\nfix out all mpm/absorb region out\ntimestep 0.8\n";
 }
 
-/** Water .6 deep in a tank of 1 x 1 m that rises by what comes out of an inlet in it or above. */
+/** Water 0.6 deep in a tank of 1 x 1 m, which rises by what comes from an inlet in it or above. */
 std::string filled(double h, const char *inlet, const char *velocity,
                    const std::string &options = "")
 {

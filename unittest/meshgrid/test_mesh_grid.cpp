@@ -11,8 +11,6 @@
 #include "meshgrid/mesh_grid_testing.h"
 #include "mpm_lammps.h"
 
-#include <set>
-
 using namespace MPM_TEST;
 
 /** Quarter of a tube from radius 1 to 2: faces xlo and xhi are the bore and the outside. */
@@ -51,6 +49,26 @@ std::string scene(int dim, const std::string &file, const std::string &material,
 double entry(Scene &run, int k)
 {
   return run.lmp->modify->get_fix_by_id("g")->compute_vector(k - 1);
+}
+
+// a stage reads the state of points, or what an earlier stage has written
+SERIAL_TEST(MeshGrid, StagesReadWhatOthersWrote)
+{
+  const ScratchFile file("tube.msh", tube(QUADS, 2));
+  for (const bool total : {false, true}) {
+    Scene run(scene(2, file.name, "linear 1 0.3", total ? "frame total" : "frame updated") +
+              "run 0\n");
+    const auto *const fix = dynamic_cast<FixMPMMesh *>(run.lmp->modify->get_fix_by_id("g"));
+    std::set<std::string> known = {"x", "v", "C", "F", "tau", "history", "mass", "f", "own"};
+    if (total) known.insert("cells");    // those of the start
+    for (const auto &stage : fix->plan().list()) {
+      for (const auto &read : stage.reads.list())
+        EXPECT_TRUE(known.count(read)) << stage.name << " " << read;
+      EXPECT_FALSE(stage.writes.list().empty()) << stage.name;
+      known.insert(stage.writes.list().begin(), stage.writes.list().end());
+    }
+    EXPECT_EQ(fix->plan().list().back().name, "motion and strain");
+  }
 }
 
 // Lame's solution of a tube under pressure: order 2, both frames
