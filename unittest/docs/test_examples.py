@@ -63,9 +63,11 @@ LOG_TOLERANCE = 1.0e-6         # another machine, compiler or version: what sums
 # columns that amplify round-off: of the range, and why. A change of the density by 5e-15 of it makes the flow into the levee differ as
 # much as two processes do: by 1e-16 at 1.54 s, 1e-8 at 1.76 s, and 4e-4 at 1.98 s
 FILLING = "pores that are just full, or not, change their storage a thousandfold: which step it is hangs on round-off"
+FOLDS = "each contact of folds that open begins in the step that round-off decides"
 COIL = "what the solver leaves, 1e-7, grows from turn to turn"
 CHAOTIC = {"levee": {"v_in": (0.05, FILLING), "v_out": (0.05, FILLING), "v_toe": (0.05, FILLING), "v_crest": (0.05, FILLING),
                      "v_river": (1.0e-5, "it follows the time, and steps differ with the waves")},
+           "folded-airbag": {"f_gas": (1.0e-5, FOLDS)},
            "coiling-honey": {"v_x": (1.0e-3, COIL), "v_y": (1.0e-3, COIL), "v_pile": (1.0e-3, COIL)}}
 
 STEPS = r"^run\s+(?!\s|0\b).*"    # a command that takes steps
