@@ -189,20 +189,18 @@ Options MPMIncompressibleOptions::declare(int dim)
         {wall_is_twice, "wall", "has the same face twice: give each face once"},
         {is_viscous, "region",
          "has no friction, and cannot be used with viscosity: use the keyword stick instead, or "
-         "leave "
-         "viscosity out"},
+         "leave viscosity out"},
         {!implicit && parts_are_given, "parts",
          "is about implicit viscosity, as the other equations are those of any time step: add the "
          "keywords viscosity and implicit yes, or remove it"},
         {!implicit || !is_viscous, "stick",
          "is about viscosity, in an implicit step, as an explicit one would be bound by the least "
-         "distance of "
-         "a face to a wall: add the keywords viscosity and implicit yes, or use the keyword region "
-         "instead"},
+         "distance of a face to a wall: add the keywords viscosity and implicit yes, or use the "
+         "keyword region instead"},
         {tension > 0.0, "region",
          "cannot be used with tension, as a fluid that slips along it without friction never comes "
-         "to rest: use the keyword stick "
-         "with implicit viscosity instead, or walls of the box, or leave tension out"},
+         "to rest: use the keyword stick with implicit viscosity instead, or walls of the box, or "
+         "leave tension out"},
         {!liquids.empty() && tension > 0.0, "tension",
          "is that of one liquid, and cannot be used with liquid: leave one of them out"},
         {!solid_groups.empty() && tension > 0.0, "tension",

@@ -38,11 +38,10 @@ void FixMPMImplicit::check_field(const MPMPlan &plan, MPMField &of) const
   for (auto *other : plan.physics)
     if (dynamic_cast<MPMPorePressure *>(other) &&
         (time.kind == MPMTimeMethod::NEWMARK || time.kind == MPMTimeMethod::MIDPOINT))
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit solves for the pressure of fix {} {} at the end of a step, which "
-          "newmark and midpoint are not made of: use static or euler",
-          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit solves for the pressure of fix {} {} at the end of a step, "
+                 "which newmark and midpoint are not made of: use static or euler",
+                 dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
   check_transfer(of);
   check_stabilization(plan, of);
   check_physics(plan);
@@ -63,11 +62,10 @@ void FixMPMImplicit::check_physics(const MPMPlan &plan) const
   for (auto *other : plan.physics)
     if (other != this && !dynamic_cast<MPMLoad *>(other) && !other->precedes_motion() &&
         !dynamic_cast<MPMPorePressure *>(other))
-      error->all(
-          FLERR, Error::NOLASTLINE,
-          "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} {} "
-          "computes in explicit steps would not be in its balance: remove one of them",
-          dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/implicit balances stress, inertia, and loads on points, and what fix {} "
+                 "{} computes in explicit steps would not be in its balance: remove one of them",
+                 dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id);
 }
 
 /** Points must move with the velocities that forces belong to. */
@@ -86,17 +84,15 @@ void FixMPMImplicit::check_transfer(MPMField &of) const
             !(options.transfer == FLIP && options.flip == 1.0),
         "this transfer",
         "points move with another velocity than they have at the end of the step: use transfer "
-        "flip 1.0, "
-        "or euler or midpoint instead"},
+        "flip 1.0, or euler or midpoint instead"},
        {time.kind == MPMTimeMethod::MIDPOINT &&
             !(options.transfer == FLIP && options.flip == 1.0) &&
             !(options.transfer == APIC && is_mls(options.shape, options.transfer) &&
               !options.strains_by_gradient() && !of.frame->is_total()),
         "this transfer",
         "points move with another velocity than they have at the end of the step: use transfer "
-        "flip "
-        "1.0, in the updated frame also transfer apic with shape quadratic or cubic and stress "
-        "mls"},
+        "flip 1.0, in the updated frame also transfer apic with shape quadratic or cubic and "
+        "stress mls"},
        {options.averages_strain(), "locking fbar and both",
         "their motions of points are not those that forces belong to: use locking pressure"},
        {options.modified_edges, "edges modified", "use edges plain, the default"},
@@ -111,11 +107,10 @@ void FixMPMImplicit::check_transfer(MPMField &of) const
 void FixMPMImplicit::check_stabilization(const MPMPlan &plan, MPMField &of) const
 {
   if (stabilize > 0.0 && !may_stabilize(of))
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/implicit stabilize is for points of shape quadratic or cubic of fix mpm {}, "
-        "without fix mpm/elements, and not around an axis: remove it",
-        of.id());
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit stabilize is for points of shape quadratic or cubic of fix mpm "
+               "{}, without fix mpm/elements, and not around an axis: remove it",
+               of.id());
   for (auto *other : plan.physics)
     if (stabilize > 0.0 && has_pressure(other, of))
       error->all(FLERR, Error::NOLASTLINE,
@@ -156,18 +151,17 @@ void FixMPMImplicit::check_actions(const MPMPlan &plan, const MPMField &of) cons
                       *const name = dynamic_cast<Fix *>(action)->id;
     auto *const contact = action->trial_contact();
     if (!contact)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix mpm/implicit holds nodes by walls, and knows nothing of what fix {} {} does: "
-                 "use fix mpm/boundary, with a region that moves for a rigid body, or explicit "
-                 "steps",
-                 style, name);
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix mpm/implicit holds nodes by walls, and knows nothing of what fix {} {} does: use "
+          "fix mpm/boundary, with a region that moves for a rigid body, or explicit steps",
+          style, name);
     for (auto *other : plan.physics)
       if (has_pressure(other, of))
         error->all(
             FLERR, Error::NOLASTLINE,
-            "Fix mpm/implicit finds no contact and friction of walls together with the water "
-            "of fix {} {}, and fix {} {} has one of these: use stick, or slip without "
-            "friction",
+            "Fix mpm/implicit finds no contact and friction of walls together with the water of "
+            "fix {} {}, and fix {} {} has one of these: use stick, or slip without friction",
             dynamic_cast<Fix *>(other)->style, dynamic_cast<Fix *>(other)->id, style, name);
     rubs = rubs || (contact->has_friction() && contact->is_regularised());
   }
@@ -189,35 +183,33 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
           "bodies share a fix mpm, name all of them in one fix mpm/contact, or use explicit steps",
           fields.size(), contacts.size(), field->id());
   if (time.keeps_acceleration())
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/implicit alpha and hht keep accelerations of points, whose part in the "
-               "force between bodies (fix mpm/contact {}) would not be told: use newmark or "
-               "midpoint",
-               contacts[0]->id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/implicit alpha and hht keep accelerations of points, whose part in the force "
+        "between bodies (fix mpm/contact {}) would not be told: use newmark or midpoint",
+        contacts[0]->id);
   if (preconditioner == MULTIGRID)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/implicit solver multigrid knows one fix mpm, and there are {}, which fix "
                "mpm/contact {} joins: use solver blocks",
                fields.size(), contacts[0]->id);
   for (const auto *field : fields)
-    refuse_field(lmp, *this, *field,
-                 {{field->domains != nullptr, "shape cpdi and cpdi2",
-                   "bodies that touch by fix mpm/contact need functions of nodes: use shape "
-                   "quadratic"},
-                  {!field->elements.empty(), "fix mpm/elements",
-                   "contact of elements is for explicit steps: use points"},
-                  {field->options.shape == MPM_NS::LINEAR, "shape linear",
-                   "forces between bodies jump when points go from cell to cell: use shape "
-                   "quadratic"}});
+    refuse_field(
+        lmp, *this, *field,
+        {{field->domains != nullptr, "shape cpdi and cpdi2",
+          "bodies that touch by fix mpm/contact need functions of nodes: use shape quadratic"},
+         {!field->elements.empty(), "fix mpm/elements",
+          "contact of elements is for explicit steps: use points"},
+         {field->options.shape == MPM_NS::LINEAR, "shape linear",
+          "forces between bodies jump when points go from cell to cell: use shape quadratic"}});
   for (auto *action : plan.actions) {
     auto *const contact = action->trial_contact();
     if (!contact || dynamic_cast<MPMBodyContact *>(contact)) continue;
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/implicit knows walls that hold bodies together with fix mpm/contact {}, but "
-        "not yet those that separate, have friction, or are regions that move, such as fix "
-        "mpm/boundary {}: use stick or slip at faces or regions at rest, or a body of its "
-        "own (fix mpm) for the wall",
-        contacts[0]->id, dynamic_cast<Fix *>(action)->id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit knows walls that hold bodies together with fix mpm/contact {}, "
+               "but not yet those that separate, have friction, or are regions that move, such as "
+               "fix mpm/boundary {}: use stick or slip at faces or regions at rest, or a body of "
+               "its own (fix mpm) for the wall",
+               contacts[0]->id, dynamic_cast<Fix *>(action)->id);
   }
 }

@@ -14,7 +14,7 @@
      K du - Q dp = f,   Q^T du + A dp = g.
 
    This is solved as a whole: in steps in which pore water first bears nearly all load and then
-   no_pressure, iterations between the two would converge slowly in one or the other. The solver is
+   none, iterations between the two would converge slowly in one or the other. The solver is
    GMRES, because flow through surfaces makes A unsymmetric. Its preconditioner is a step of the
    fixed-stress split (J. Kim, H.A. Tchelepi, R. Juanes, Comput. Methods Appl. Mech. Eng. 200 (2011)
    1591; J.A. White, N. Castelletto, H.A. Tchelepi, ibid. 303 (2016) 55): du = K^-1 f, and then dp =

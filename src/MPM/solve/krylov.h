@@ -38,12 +38,10 @@ void find_residual(LinearSystem &, const double *b, const double *x, double *r);
 struct SolveReport {
   enum Outcome {
     CONVERGED,
-    TOO_MANY,    ///< the most iterations allowed were not enough
-    /** The operator or its preconditioner is not positive definite, as the method requires */
-    /** No further progress is possible: the right side is not in the range of the operator */
-    INDEFINITE,
-    SINGULAR,
-    NOT_FINITE    ///< a residual is not a number
+    TOO_MANY,      ///< the most iterations allowed were not enough
+    INDEFINITE,    ///< operator or preconditioner are not positive definite, as the method requires
+    SINGULAR,      ///< no further progress: the right side is not in the range of the operator
+    NOT_FINITE     ///< a residual is not a number
   };
   Outcome outcome = CONVERGED;
   int iterations = 0;
