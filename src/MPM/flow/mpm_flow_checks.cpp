@@ -78,8 +78,8 @@ void MPMFlowChecks::check_points()
                who, all[1], options.density);
   if (all[2] && comm->me == 0 && !warned_of_size)
     error->warning(FLERR,
-                   "{}: {} points are larger than a cell, and leave others empty when they "
-                   "move: use points with a spacing of at most {:.6g}, better {:.6g}",
+                   "{}: {} points are larger than a cell, and leave others empty when they move: "
+                   "use points with a spacing of at most {:.6g}, better {:.6g}",
                    who, all[2], options.h, 0.5 * options.h);
   warned_of_size = all[2] > 0;
   check_liquids();
@@ -99,11 +99,10 @@ void MPMFlowChecks::check_liquids()
   MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_INT, MPI_MAX, world);
   for (std::size_t k = 0; k < options.liquids.size(); k++)
     if (!all[k] && comm->me == 0 && !warned_of_liquids)
-      error->warning(
-          FLERR,
-          "{}: the group {} of keyword liquid has no points of this fix: put some into it, "
-          "with keyword group of create_points, or with the group command after it",
-          who, options.liquids[k].group);
+      error->warning(FLERR,
+                     "{}: the group {} of keyword liquid has no points of this fix: put some into "
+                     "it, with keyword group of create_points, or with the group command after it",
+                     who, options.liquids[k].group);
   warned_of_liquids = true;
 }
 
@@ -142,11 +141,10 @@ void MPMFlowChecks::check_gas()
   if (!parts.regions) return;
   parts.gas->pockets.find_solid(parts.regions.get());
   if (parts.regions->n() > 1 && comm->me == 0 && !warned_of_regions)
-    error->warning(
-        FLERR,
-        "{}: forces on its regions are those of the water alone, without the gas, "
-        "as there are several: use a union of them as one region if you need these forces",
-        who);
+    error->warning(FLERR,
+                   "{}: forces on its regions are those of the water alone, without the gas, as "
+                   "there are several: use a union of them as one region if you need these forces",
+                   who);
   warned_of_regions = true;
 }
 
@@ -156,16 +154,14 @@ void MPMFlowChecks::check_others()
     if (other->id != id)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fluids of fixes {} and {} (style {}) would go through each other: give their "
-                 "points to one "
-                 "of these fixes",
+                 "points to one of these fixes",
                  id, other->id, STYLE);
   for (const auto *other : modify->get_fix_by_style("^mpm$"))
     if (comm->me == 0 && !warned_of_bodies)
-      error->warning(
-          FLERR,
-          "Points of fix {} (style {}) go through those of fix {} (style {}), as neither feels "
-          "the other",
-          id, STYLE, other->id, other->style);
+      error->warning(FLERR,
+                     "Points of fix {} (style {}) go through those of fix {} (style {}), as "
+                     "neither feels the other",
+                     id, STYLE, other->id, other->style);
   warned_of_bodies = true;
   if (modify->get_fix_by_style("^mpm$").empty())    // fix mpm would warn of these itself
     warn_of_forgotten_points(lmp, STYLE, "the flow goes through them");

@@ -39,17 +39,16 @@ void MPMFlowLattice::check_box(const char *style)
   for (int d = 0; d < lattice.dim; d++) {
     const char axis = 'x' + d;
     if (domain->boundary[d][0] > 1 || domain->boundary[d][1] > 1)
-      error->all(FLERR, Error::NOLASTLINE,
-                 "Fix {} requires periodic or fixed boundaries (p or f), but axis {} is "
-                 "shrink-wrapped",
-                 style, axis);
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix {} requires periodic or fixed boundaries (p or f), but axis {} is shrink-wrapped",
+          style, axis);
     const double length = domain->prd[d], n = std::round(length / lattice.h);
     if (!(n >= 1.0) || std::fabs(n * lattice.h - length) > 1.0e-10 * length)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix {}: the length {} of the box along {} must be a multiple of the node spacing "
-                 "{}, as faces "
-                 "of cells are walls or meet their periodic images: the nearest valid spacing is "
-                 "{:.16g}",
+                 "{}, as faces of cells are walls or meet their periodic images: the nearest valid "
+                 "spacing is {:.16g}",
                  style, length, axis, lattice.h, length / std::max(n, 1.0));
     if (!(n < FARTHEST))
       error->all(FLERR, Error::NOLASTLINE, "Fix {}: node spacing {} is too small for the box",

@@ -46,16 +46,15 @@ MPMFlowParts::MPMFlowParts(LAMMPS *lmp, const MPMIncompressibleOptions &options,
 
   pressure = std::make_unique<MPMFlowPressure>(lmp, cells);
   if (options.solver == MPMIncompressibleOptions::FOURIER && !MPMFlowFourier::is_there())
-    lmp->error->all(
-        FLERR,
-        "Fix mpm/incompressible solver fourier: this program was built without FFTW; install "
-        "it (libfftw3-dev) and build again, or use solver multigrid");
+    lmp->error->all(FLERR,
+                    "Fix mpm/incompressible solver fourier: this program was built without FFTW; "
+                    "install it (libfftw3-dev) and build again, or use solver multigrid");
   if (options.solver == MPMIncompressibleOptions::FOURIER) pressure->use_fourier();
   air = std::make_unique<MPMFlowAir>(cells);
   if (options.implicit && liquids.largest_viscosity == 0.0)
-    lmp->error->all(FLERR,
-                    "Fix mpm/incompressible implicit yes is about the viscosity: add the keyword "
-                    "viscosity");
+    lmp->error->all(
+        FLERR,
+        "Fix mpm/incompressible implicit yes is about the viscosity: add the keyword viscosity");
   if (options.implicit) {
     stress = std::make_unique<MPMFlowStress>(lmp, cells, *pressure);
     stress->inverse_density = options.liquids.empty() ? nullptr : &fields.inverse_density;
@@ -130,11 +129,10 @@ void MPMFlowParts::add_gas(LAMMPS *lmp, const MPMIncompressibleOptions &options)
   for (int d = 0; d < dim; d++)
     for (int s = 0; s < 2; s++)
       if (options.open[d][s] && cells.lattice.periodic[d])
-        lmp->error->all(
-            FLERR,
-            "Fix mpm/incompressible open {}{}: the box is periodic there, and has no such "
-            "face: use boundary f",
-            (char) ('x' + d), s ? "hi" : "lo");
+        lmp->error->all(FLERR,
+                        "Fix mpm/incompressible open {}{}: the box is periodic there, and has no "
+                        "such face: use boundary f",
+                        (char) ('x' + d), s ? "hi" : "lo");
   gas = std::make_unique<MPMFlowGas>(lmp, cells, *pressure, options.gas_law);
   for (int d = 0; d < dim; d++) std::copy_n(options.open[d], 2, gas->pockets.open[d]);
   gas_rows = std::make_unique<MPMFlowGasRows>(lmp, cells, *pressure, *gas);
@@ -182,16 +180,14 @@ void MPMFlowParts::init_bodies(LAMMPS *lmp, const MPMIncompressibleOptions &opti
   if (!bodies->any()) bodies.reset();
   pressure->bodies = bodies.get();
   if (bodies && solids)
-    lmp->error->all(FLERR, Error::NOLASTLINE,
-                    "{}: bodies of fix mpm/rigid need a flow without solids: remove the "
-                    "keyword solid",
-                    who);
-  if (bodies && stick)
     lmp->error->all(
         FLERR, Error::NOLASTLINE,
-        "{}: bodies of fix mpm/rigid feel the pressure alone, and not the viscosity of a "
-        "flow that sticks to them: use the keyword region, without viscosity",
-        who);
+        "{}: bodies of fix mpm/rigid need a flow without solids: remove the keyword solid", who);
+  if (bodies && stick)
+    lmp->error->all(FLERR, Error::NOLASTLINE,
+                    "{}: bodies of fix mpm/rigid feel the pressure alone, and not the viscosity of "
+                    "a flow that sticks to them: use the keyword region, without viscosity",
+                    who);
   if (bodies && options.reflect > 0.0)
     lmp->error->all(FLERR, Error::NOLASTLINE,
                     "{}: reflect cannot be used with bodies of fix mpm/rigid: remove it", who);

@@ -179,10 +179,10 @@ template <int dim> void take_shear_off(const double *n, double T[3][3])
 
 /** Coordinates and widths of points in spacings. */
 template <int dim> struct PlaceOfPoint {
-  const Lattice &lattice;
+  const MPM_NS::Lattice &lattice;
   double per_cell, volume = 0.0, width = 0.0;
 
-  explicit PlaceOfPoint(const Lattice &lattice) :
+  explicit PlaceOfPoint(const MPM_NS::Lattice &lattice) :
       lattice(lattice), per_cell(1.0 / lattice.cell_volume())
   {
   }

@@ -186,8 +186,8 @@ void FixMPMImplicit::step()
       error->warning(
           FLERR,
           "Fix mpm/implicit {}: step {} found its balance only with a stiffness of nodes that "
-          "points barely reach, which steps have from here on: use stabilize 1 from the "
-          "start, or, for solids that keep their neighbors, fix mpm ... frame total",
+          "points barely reach, which steps have from here on: use stabilize 1 from the start, or, "
+          "for solids that keep their neighbors, fix mpm ... frame total",
           id, update->ntimestep);
   }
   std::string list;
@@ -260,8 +260,7 @@ void FixMPMImplicit::post_run()
                          PARTS_OF_STEP[k]);
   utils::logmesg(lmp,
                  "Fix mpm/implicit {}: {:.2f} Newton iterations in a step, {:.1f} of the linear "
-                 "solver in each; "
-                 "last ratio of forces {:.3g}; {:.3g} ms a step ({}){}{}\n",
+                 "solver in each; last ratio of forces {:.3g}; {:.3g} ms a step ({}){}{}\n",
                  id, (total[NEWTON] - at_start[NEWTON]) / steps,
                  (total[LINEAR] - at_start[LINEAR]) /
                      std::max(1.0, total[NEWTON] - at_start[NEWTON]),

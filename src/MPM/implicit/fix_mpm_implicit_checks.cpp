@@ -115,11 +115,10 @@ void FixMPMImplicit::check_transfer(MPMField &of) const
 void FixMPMImplicit::check_stabilization(const MPMPlan &plan, MPMField &of) const
 {
   if (stabilize > 0.0 && !may_stabilize(of))
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/implicit stabilize is for points of shape quadratic or cubic of fix mpm {}, "
-        "without fix mpm/elements, and not around an axis: remove it",
-        of.id());
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit stabilize is for points of shape quadratic or cubic of fix mpm "
+               "{}, without fix mpm/elements, and not around an axis: remove it",
+               of.id());
   for (auto *other : plan.physics)
     if (stabilize > 0.0 && has_pressure(other, of))
       error->all(FLERR, Error::NOLASTLINE,
@@ -191,35 +190,33 @@ void FixMPMImplicit::check_bodies(const MPMPlan &plan) const
           "bodies share a fix mpm, name all of them in one fix mpm/contact, or use explicit steps",
           fields.size(), contacts.size(), field->id());
   if (time.keeps_acceleration())
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/implicit alpha and hht keep accelerations of points, whose part in the "
-               "force between bodies (fix mpm/contact {}) would not be told: use newmark or "
-               "midpoint",
-               contacts[0]->id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/implicit alpha and hht keep accelerations of points, whose part in the force "
+        "between bodies (fix mpm/contact {}) would not be told: use newmark or midpoint",
+        contacts[0]->id);
   if (preconditioner == MULTIGRID)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/implicit solver multigrid knows one fix mpm, and there are {}, which fix "
                "mpm/contact {} joins: use solver blocks",
                fields.size(), contacts[0]->id);
   for (const auto *field : fields)
-    refuse_field(lmp, *this, *field,
-                 {{field->domains != nullptr, "shape cpdi and cpdi2",
-                   "bodies that touch by fix mpm/contact need functions of nodes: use shape "
-                   "quadratic"},
-                  {!field->elements.empty(), "fix mpm/elements",
-                   "contact of elements is for explicit steps: use points"},
-                  {field->options.shape == MPM_NS::LINEAR, "shape linear",
-                   "forces between bodies jump when points go from cell to cell: use shape "
-                   "quadratic"}});
+    refuse_field(
+        lmp, *this, *field,
+        {{field->domains != nullptr, "shape cpdi and cpdi2",
+          "bodies that touch by fix mpm/contact need functions of nodes: use shape quadratic"},
+         {!field->elements.empty(), "fix mpm/elements",
+          "contact of elements is for explicit steps: use points"},
+         {field->options.shape == MPM_NS::LINEAR, "shape linear",
+          "forces between bodies jump when points go from cell to cell: use shape quadratic"}});
   for (auto *action : plan.actions) {
     auto *const contact = action->trial_contact();
     if (!contact || dynamic_cast<MPMBodyContact *>(contact)) continue;
-    error->all(
-        FLERR, Error::NOLASTLINE,
-        "Fix mpm/implicit knows walls that hold bodies together with fix mpm/contact {}, but "
-        "not yet those that separate, have friction, or are regions that move, such as fix "
-        "mpm/boundary {}: use stick or slip at faces or regions at rest, or a body of its "
-        "own (fix mpm) for the wall",
-        contacts[0]->id, dynamic_cast<Fix *>(action)->id);
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/implicit knows walls that hold bodies together with fix mpm/contact {}, "
+               "but not yet those that separate, have friction, or are regions that move, such as "
+               "fix mpm/boundary {}: use stick or slip at faces or regions at rest, or a body of "
+               "its own (fix mpm) for the wall",
+               contacts[0]->id, dynamic_cast<Fix *>(action)->id);
   }
 }

@@ -9,13 +9,10 @@
 #include "solve/envelope_factors.h"
 
 #include <algorithm>
-#include <numeric>
 
 using namespace MPM_NS;
 
 static constexpr int B = FACTOR_BLOCK;
-// ratio of the longest edge of a body to the next one, up to which planes are tried
-static constexpr int COMPACT = 3;
 
 /** So many places in whole blocks. */
 static int padded(int n)
@@ -58,56 +55,6 @@ void EnvelopeFactors::put_in_layers(const Sparse &A)
       from = queue.back();
     }
   }
-}
-
-/** Unknowns in planes across an axis, and there in lines across another one. A layer has as many
- *  planes as entries reach. */
-void EnvelopeFactors::put_in_planes(const Sparse &A, const std::vector<LatticeIndex> &nodes,
-                                    int axis, int other)
-{
-  const int width = unknowns / (int) nodes.size();
-  const auto key = [&](int k) -> LatticeIndex {
-    const auto &at = nodes[k / width];
-    return {at[axis], at[other], at[3 - axis - other]};
-  };
-  std::iota(queue.begin(), queue.end(), 0);
-  std::stable_sort(queue.begin(), queue.end(), [&](int a, int b) {
-    return key(a) < key(b);
-  });
-  int reach = 1;
-  for (int c = 0; c < unknowns; c++)
-    for (Sparse::InnerIterator it(A, c); it; ++it)
-      reach = std::max(reach, key(c)[0] - key((int) it.row())[0]);
-  for (int k = 0; k < unknowns; k++) layer[k] = (key(k)[0] - key(queue[0])[0]) / reach;
-}
-
-/** Planes in the place of layers, where the body is compact and the envelope then smaller. */
-void EnvelopeFactors::compare_with_planes(const Sparse &A, const std::vector<LatticeIndex> &nodes)
-{
-  LatticeIndex low = nodes[0], high = nodes[0];
-  for (const auto &at : nodes)
-    for (int d = 0; d < 3; d++) {
-      low[d] = std::min(low[d], at[d]);
-      high[d] = std::max(high[d], at[d]);
-    }
-  int axes[3] = {0, 1, 2};
-  const auto edge = [&](int d) {
-    return high[d] - low[d] + 1;
-  };
-  std::stable_sort(axes, axes + 3, [&](int a, int b) {
-    return edge(a) > edge(b);
-  });
-  if (edge(axes[0]) > COMPACT * edge(axes[1])) return;
-  const auto queue_of_layers = queue, layers = layer;
-  const int64_t count = half[0].count();
-  put_in_planes(A, nodes, axes[0], axes[1]);
-  put_in_order();
-  find_envelopes(A);
-  if (half[0].count() < count) return;
-  queue = queue_of_layers;
-  layer = layers;
-  put_in_order();
-  find_envelopes(A);
 }
 
 /** Places of unknowns in one piece. */
@@ -211,13 +158,12 @@ void EnvelopeFactors::fill(const Sparse &A)
 
 /* ---------------------------------------------------------------------- */
 
-bool EnvelopeFactors::compute(const Sparse &A, const std::vector<LatticeIndex> &nodes)
+bool EnvelopeFactors::compute(const Sparse &A)
 {
   unknowns = (int) A.rows();
   put_in_layers(A);
   put_in_order();
   find_envelopes(A);
-  if (!nodes.empty() && half[0].count() > split) compare_with_planes(A, nodes);
   if (half[0].count() > split) {
     cut(A, std::max(0, unknowns - 1 - half[0].place_of_half()));
     find_envelopes(A);

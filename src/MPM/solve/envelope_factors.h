@@ -10,7 +10,6 @@
 #define MPM_SOLVE_ENVELOPE_FACTORS_H
 
 #include "solve/envelope.h"
-#include "solve/lattice_nodes.h"
 #include "solve/lattice_ranks.h"
 
 #include <Eigen/SparseCore>
@@ -25,8 +24,7 @@ namespace MPM_NS {
  *  24th ACM Conf. (1969) 157), so that the entries of a row are close to the diagonal, and L is
  *  stored in an envelope. This has more entries than orderings that minimize their number, but
  *  products of blocks run at the full speed of the processor. For systems of some thousand unknowns
- *  this is ten times faster. Of compact bodies, layers from a corner are large shells; planes of a
- *  lattice across the longest axis take their place where the envelope is then smaller.
+ *  this is ten times faster.
  *
  *  If the envelope is large, a layer in the middle is put last, and both halves are eliminated
  *  toward it, each from its end. This takes the same number of operations, but two ranks can share
@@ -51,9 +49,8 @@ class EnvelopeFactors {
   }
 
   /** Factorizes a matrix, given with both triangles. Returns false if it is not positive definite
-   *  or not finite; the factors must not be used then. nodes: places of the nodes that have as many
-   *  unknowns each, one node after the other; none: they are not known. */
-  bool compute(const Eigen::SparseMatrix<double> &A, const std::vector<LatticeIndex> &nodes = {});
+   *  or not finite; the factors must not be used then. */
+  bool compute(const Eigen::SparseMatrix<double> &A);
   /** The same for a matrix with entries in the same places as in the last matrix, with the known
    *  order. */
   bool compute_again(const Eigen::SparseMatrix<double> &A);
@@ -84,8 +81,6 @@ class EnvelopeFactors {
     return !has_halves() || !ranks || ranks->number() == 1 || ranks->me() == which;
   }
   void put_in_layers(const Sparse &);
-  void put_in_planes(const Sparse &, const std::vector<LatticeIndex> &nodes, int axis, int other);
-  void compare_with_planes(const Sparse &, const std::vector<LatticeIndex> &nodes);
   void put_in_order();
   void cut(const Sparse &, int at);
   int begin_of(int which) const { return which == 0 ? 0 : part[which - 1]; }
