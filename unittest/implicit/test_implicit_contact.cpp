@@ -182,8 +182,8 @@ SERIAL_TEST(Block, ComesFromAfar)
     }
 }
 
-/** A block of 1 by 1 of rubber (100 and Poisson's number) on a smooth floor, and a region plate that
- *  moves by a way along y. */
+/** A block of 1 by 1 of rubber (100 and Poisson's number) on a smooth floor, and a region plate
+ *  that moves by a way along y. */
 static std::string press(double nu, const std::string &way, const std::string &plate,
                          const std::string &kind, const std::string &options = "",
                          const std::string &extent = "-2 2 0 2.4")
@@ -197,8 +197,8 @@ static std::string press(double nu, const std::string &way, const std::string &p
       kind + "\nfix solve all mpm/implicit static\n";
 }
 
-/** The force on the plate when the block has this height. free: its sides are, whose width b is that
- *  of mu (b^2 - 1) + lambda log J = 0. */
+/** The force on the plate when the block has this height. free: its sides are, whose width b is
+ *  that of mu (b^2 - 1) + lambda log J = 0. */
 static double force_at(double height, double nu, bool free)
 {
   const double mu = 50.0 / (1.0 + nu), lambda = 100.0 * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));

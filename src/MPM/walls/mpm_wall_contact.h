@@ -66,10 +66,10 @@ class MPMWallContact {
   /** From now on, the wall acts on the line or node with this number. */
   void use_constraint(std::size_t k) { constraint = constraints ? &(*constraints)[k] : nullptr; }
 
-  /** Decides what a wall does to n nodes of a line, with the normal from the wall to the body. push:
-   *  impulse along the normal, tangential: impulse along the wall for the material to stick, both
-   *  over mass. Sets the share of the latter that friction gives. Returns false where the wall lets
-   *  go, and only pore water pushes; end with MPMWallReaction::end_sliding() otherwise. */
+  /** Decides what a wall does to n nodes of a line. normal: from the wall to the body; push: impulse
+   *  along it, and tangential: impulse along the wall for the material to stick, both over mass.
+   *  share: of the latter, what friction gives. Returns false where the wall lets go, and only pore
+   *  water pushes; end with MPMWallReaction::end_sliding() otherwise. */
   template <class Line>
   bool holds(MPMField &field, Line &line, const int64_t *node, int n, const double *normal,
              double push, double tangential, double &share, double mass = 1.0)
