@@ -69,7 +69,7 @@ SERIAL_TEST(Couette, IsWarmInTheMiddle)
 }
 
 // bodies that fly, turn, and yield: heat is kept, nearly as with conduction in each step
-PARAMETER_TEST(Closed, KeepsHeat, const char *, Values("every 4", "every auto"))
+PARAMETER_TEST(EveryClosed, KeepsHeat, const char *, Values("every 4", "every auto"))
 {
   const std::string every = GetParam();
   const std::string steps = step(every) + (every == "every auto" ? "run 500\n" : "run 100\n");
@@ -125,13 +125,13 @@ PARAMETER_TEST(Ranks, Agree, const char *, Values("every 4", "every auto"))
 }
 
 // a restart file between two conductions
-PARAMETER_TEST(Restart, Continues, const char *, Values("every 4", "every auto"))
+PARAMETER_TEST(EveryRestart, Continues, const char *, Values("every 4", "every auto"))
 {
   expect_disk_continues(disk(GetParam()) + step(GetParam()), 33);
 }
 
 // between two conductions the power is that of the last one, also after a restart file
-TEST(Restart, KeepsThePower)
+TEST(EveryRestart, KeepsThePower)
 {
   const std::string scene =
       bar(20, "every 10 xlo temperature 1.0 source v_s") + "variable s atom 3*x\ntimestep 2e-6\n";

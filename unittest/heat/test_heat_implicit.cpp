@@ -67,7 +67,7 @@ SERIAL_TEST(Long, StepsAreSteady)
 struct Slab {
   double Bi, t, face;
 };
-SERIAL_PARAMETER_TEST(Convection, CoolsASlab, Slab,
+SERIAL_PARAMETER_TEST(ImplicitConvection, CoolsASlab, Slab,
                       Values(Slab{1.0, 0.5, 0.504522}, Slab{10.0, 0.1, 0.170574}))
 {
   const Slab slab = GetParam();
@@ -179,7 +179,7 @@ SERIAL_TEST(Radiation, SteadyStateOfBernstein)
 }
 
 // heat is kept to round-off while bodies collide, however inexact solutions are
-PARAMETER_TEST(Closed, KeepsHeat, const char *,
+PARAMETER_TEST(ImplicitClosed, KeepsHeat, const char *,
                Values("time euler tolerance 1e-2", "time sdirk2 tolerance 1e-2",
                       "time sdirk2 transfer xpic 4"))
 {
@@ -236,7 +236,7 @@ TEST(Ranks, Agree)
   }
 }
 
-PARAMETER_TEST(Restart, Continues, const char *, Values("time euler", "time sdirk2"))
+PARAMETER_TEST(ImplicitRestart, Continues, const char *, Values("time euler", "time sdirk2"))
 {
   expect_disk_continues(disk(std::string("surface convection 0.3 0.0 ") + GetParam()));
 }

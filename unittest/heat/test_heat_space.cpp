@@ -140,7 +140,7 @@ SERIAL_TEST(Bernstein, RoomsInTwoCells)
 }
 
 // One end is heated, the other one held
-PARAMETER_TEST(Ends, HaveTheirTemperature, const char *,
+PARAMETER_TEST(EndsInSpace, HaveTheirTemperature, const char *,
                Values("shape linear", "shape gimp", "shape cpdi", "shape cubic", "frame total"))
 {
   for (const double offset : {0.0, 0.5})
@@ -187,7 +187,7 @@ static std::string ring(int n, double low, double high, const std::string &grid,
 }
 
 // T = 1 + J0(j r) exp(-j^2 t), J1(j) = 0
-PARAMETER_TEST(Axis, BesselFunctionDecays, const char *,
+PARAMETER_TEST(AxisInSpace, BesselFunctionDecays, const char *,
                Values("", "shape cubic", "shape linear", "shape gimp", "frame total"))
 {
   const double j = 3.83170597020751, t = 0.05;

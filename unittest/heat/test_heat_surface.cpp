@@ -32,7 +32,7 @@ static double error_of_slab(const Slab &slab, int n, double shift, const char *w
                    1.0);
 }
 
-SERIAL_PARAMETER_TEST(Convection, CoolsASlab, Slab,
+SERIAL_PARAMETER_TEST(SurfaceConvection, CoolsASlab, Slab,
                       Values(Slab{1.0, 0.5, 0.504522}, Slab{10.0, 0.1, 0.170574}))
 {
   const Slab slab = GetParam();
@@ -298,7 +298,7 @@ static const char *const SPHERE =
 
 // a long cylinder around an axis of symmetry cools as in the plane, and a sphere: mean temperatures
 // at t = 0.5 and 0.1 with Bi = 1. Nodes are at the axis; points of the sphere stand like steps
-SERIAL_PARAMETER_TEST(Axis, BodiesCool, const char *,
+SERIAL_PARAMETER_TEST(SurfaceAxis, BodiesCool, const char *,
                       Values("", "shape bernstein frame total", "shape cubic", "shape linear",
                              "shape gimp", "frame total"))
 {

@@ -71,7 +71,7 @@ SERIAL_TEST(Sliding, OnWhatDoesNotConduct)
   EXPECT_NEAR(heat_of(run, "m") / made, 1.0, 1e-12);
 }
 
-PARAMETER_TEST(Ranks, Agree, const char *, Values("on", "off"))
+PARAMETER_TEST(PenaltyRanks, Agree, const char *, Values("on", "off"))
 {
   OnRanks run("newton " + std::string(GetParam()) + "\n" + sliding(), "run 60\n");
   const double made = run.serial.compute_vector()[17];

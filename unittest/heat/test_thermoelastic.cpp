@@ -403,7 +403,7 @@ TEST(Ranks, Agree)
   }
 }
 
-PARAMETER_TEST(Restart, Continues, bool, Values(false, true))
+PARAMETER_TEST(ElasticRestart, Continues, bool, Values(false, true))
 {
   const std::string scene = GetParam() ? energetic() : collision("fix heat all mpm/heat\n");
   Continued run(scene, 30, lines_again(scene), 30);

@@ -208,7 +208,7 @@ struct Points {
   }
 };
 
-class Kernels : public KernelTest {
+class DomainKernels : public KernelTest {
  protected:
   int nodes;
   Shape shape;
@@ -223,10 +223,10 @@ class Kernels : public KernelTest {
 };
 
 // Tests of what only some of the combinations have: see the lists at the end.
-class ApicKernels : public Kernels {};
-class FreeCorners : public Kernels {};
+class ApicKernels : public DomainKernels {};
+class FreeCorners : public DomainKernels {};
 
-TEST_P(Kernels, AgreeWithTheReference)
+TEST_P(DomainKernels, AgreeWithTheReference)
 {
   for (int n : {1, 3, 8, 21}) {
     Points a(dim, shape, n), b = a;
@@ -253,7 +253,7 @@ TEST_P(Kernels, AgreeWithTheReference)
   }
 }
 
-TEST_P(Kernels, MassMomentumAndForceAreConserved)
+TEST_P(DomainKernels, MassMomentumAndForceAreConserved)
 {
   Points points(dim, shape, 50);
   for (const bool force : {false, true}) {
@@ -293,7 +293,7 @@ TEST_P(Kernels, MassMomentumAndForceAreConserved)
   }
 }
 
-TEST_P(Kernels, LinearFieldsAreExact)
+TEST_P(DomainKernels, LinearFieldsAreExact)
 {
   Points points(dim, shape, 40);
   Reals a(3), B(9), t = tile(), L(dim * dim * points.n);
@@ -405,7 +405,7 @@ TEST_P(ApicKernels, KeepAngularMomentum)
 // affine field is the nearest to what nodes have. That of TPIC is not: in domains that are sheared
 // by 6, waves as long as a domain grow, fastest where corners are on nodes.
 
-TEST_P(Kernels, ShearedDomainsGainNoEnergy)
+TEST_P(DomainKernels, ShearedDomainsGainNoEnergy)
 {
   const Transfer transfer = GetParam().transfer;
   const int along = 2 * block_side(dim), n = dim == 3 ? along * along * along : along * along;
@@ -445,7 +445,7 @@ TEST_P(Kernels, ShearedDomainsGainNoEnergy)
   if (transfer == TPIC && !SANITIZED) { EXPECT_GT(energy, first); }
 }
 
-TEST_P(Kernels, InvertedDomainsAreReported)
+TEST_P(DomainKernels, InvertedDomainsAreReported)
 {
   for (int which : {0, 7, 12}) {
     Points points(dim, shape, 13);
@@ -480,7 +480,7 @@ TEST_P(FreeCorners, OfFoldedDomainsAreReported)
   }
 }
 
-TEST_P(Kernels, TileMovesItsBox)
+TEST_P(DomainKernels, TileMovesItsBox)
 {
   Reals t = tile();
   expect_box_moves(kernels,
@@ -493,6 +493,6 @@ bool is_apic(const Case &c)
   return c.transfer == APIC || c.transfer == AFLIP;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Kernels, all_cases({CPDI, CPDI2}), case_name);
+INSTANTIATE_TEST_SUITE_P(All, DomainKernels, all_cases({CPDI, CPDI2}), case_name);
 INSTANTIATE_TEST_SUITE_P(All, ApicKernels, all_cases({CPDI, CPDI2}, is_apic), case_name);
 INSTANTIATE_TEST_SUITE_P(All, FreeCorners, all_cases({CPDI2}), case_name);

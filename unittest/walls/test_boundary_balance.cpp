@@ -74,7 +74,7 @@ const Motion motions[] = {
 
 // Force and torque are the changes of momentum and angular momentum, and work is that of the force
 // along the way of the wall, not the sums of the fix over nodes. The ledger has the same work
-PARAMETER_TEST(Balance, OfMovingWalls, Motion, ValuesIn(motions))
+PARAMETER_TEST(RegionBalance, OfMovingWalls, Motion, ValuesIn(motions))
 {
   const auto &c = GetParam();
   const std::string options = c.options, name = c.name;

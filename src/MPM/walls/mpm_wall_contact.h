@@ -66,8 +66,8 @@ class MPMWallContact {
   /** From now on, the wall acts on the line or node with this number. */
   void use_constraint(std::size_t k) { constraint = constraints ? &(*constraints)[k] : nullptr; }
 
-  /** Decides what a wall does to n nodes of a line. normal: from the wall to the body; push: impulse
-   *  along it, and tangential: impulse along the wall for the material to stick, both over mass.
+  /** Decides what a wall does to n nodes of a line. normal: from the wall to the body; push:
+   *  impulse along it; tangential: that along the wall for the material to stick; both over mass.
    *  share: of the latter, what friction gives. Returns false where the wall lets go, and only pore
    *  water pushes; end with MPMWallReaction::end_sliding() otherwise. */
   template <class Line>
