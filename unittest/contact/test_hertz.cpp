@@ -245,6 +245,7 @@ TEST(Hertz, OnSeveralLattices)
 // are of the indentation, which is of first order in the spacing of points
 TEST(Hertz, OnTwoLattices)
 {
+  LONG_CASE();
   const Block block = {0.3, 4.0, 4.0, 4.0};
   Errors error[2];
   for (int k = 0; k < 2; k++) {

@@ -438,6 +438,7 @@ SERIAL_TEST(ThinElements, HenckysMembraneAtAnyAngle)
 // balloons (R2, V1): a stretch of 1.2 by a given pressure, and by either kind of gas
 SERIAL_TEST(Airbag, Balloons)
 {
+  LONG_CASE();
   ScratchFile file("ball.msh", sphere(4, 0.1));
   const std::string rest = "fix dt all mpm/dt 0.4\nfix rest all mpm/relax 1e-4\nrun 3000\n";
   {

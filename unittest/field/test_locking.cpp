@@ -86,6 +86,7 @@ static Cook cook(const char *options, double h, double nu, double cfl = 0.75)
 
 TEST(CookMembrane, LocksWithoutCure)
 {
+  LONG_CASE();
   const Cook without = cook("", 2.0, 0.4999), with = cook("locking fbar", 2.0, 0.4999);
   EXPECT_LT(without.u / 6.953, 0.91);
   EXPECT_NEAR(with.u / 6.953, 1.0, 0.04);

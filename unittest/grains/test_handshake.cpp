@@ -470,6 +470,7 @@ TEST(Handshake, DampingGrowsOverTheZone)
 // integrator of the atoms leaves, which falls with the square of the time step
 SERIAL_TEST(Handshake, KnowsTheEnergyThatHotAtomsLose)
 {
+  LONG_CASE();
   for (const std::string options : {"", "damp 5.0"}) {
     double error[2];
     for (int fine = 0; fine < 2; fine++) {

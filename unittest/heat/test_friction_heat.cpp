@@ -189,6 +189,7 @@ TEST(Musl, IsWarnedOf)
 // bodies share heat like their effusivities, 1 to 4; or as they are told; or one of them gets all
 SERIAL_TEST(Share, IsThatOfEffusivities)
 {
+  LONG_CASE();
   Braked b = {4.0};
   b.base = replaced(b.base, "50.0", "800.0");
   Scene run(b.scene());

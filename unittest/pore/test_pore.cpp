@@ -37,6 +37,7 @@ SERIAL_TEST(Consolidation, Terzaghi)
 // order above one. (With 2 g/cm^3 inertia shifts them by 0.05 % of the load)
 SERIAL_TEST(Consolidation, Converges)
 {
+  LONG_CASE();
   struct Surface {
     const char *options;
     double top, offset;
@@ -516,6 +517,7 @@ SERIAL_TEST(Units, FrictionInMetal)
 // the same in three dimensions, where the surface is anywhere in a cell, with either shape
 SERIAL_TEST(Consolidation, InThreeDimensions)
 {
+  LONG_CASE();
   for (const char *shape : {"quadratic", "cubic"})
     EXPECT_LT(terzaghi_in_space(shape, 0.4, 2.2e8, ""), 0.004);
 }

@@ -116,7 +116,7 @@ PARAMETER_TEST(
 // pressure of the water is lowered: first it rises in the middle. An eighth of the sphere
 PARAMETER_TEST(Cryer, PressureRisesFirst, const char *, Values("", " every auto"))
 {
-  LONG_AFTER(1);
+  LONG_CASE();
   const Clay clay = {0.2, 50.0, 200.0};
   const int n = 12;
   const double h = 1.0 / n, P = 1e-3, c = clay.rate(), L = 1.0 + 1.5 * h;
@@ -281,7 +281,7 @@ PARAMETER_TEST(
            Large{"neo-Hooke, constant k, 0.5, cubic", 0.5, 0.5, NH_CONSTANT, 20, ALL, {}, "cubic"},
            Large{"neo-Hooke, k J^2, 0.5", 0.5, 0.5, NH_SQUARED, 20, ALL, NEO_HOOKE_SQUARED}))
 {
-  LONG_AFTER(1);
+  LONG_CASE();
   const Large &soil = GetParam();
   constexpr double BULK = 200.0;    // of the water, in moduli of the soil
   const int n = soil.cells;

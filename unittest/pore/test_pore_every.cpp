@@ -14,6 +14,7 @@ using namespace MPM_TEST;
 // Terzaghi's column at T = 0.2, drained at a face or at a free surface, also far above the limit
 SERIAL_TEST(Consolidation, Terzaghi)
 {
+  LONG_CASE();
   for (const double Kf : {2.2e8, 2.2e9})
     for (const char *options : {"yhi pressure 0 every 5", "free pressure 0 every 5",
                                 "yhi pressure 0 every auto", "free pressure 0 every auto"}) {

@@ -117,6 +117,7 @@ SERIAL_TEST(Formulations, DifferInDamping)
 // Terzaghi's column at T = 0.2, as without inertia
 SERIAL_TEST(Consolidation, Terzaghi)
 {
+  LONG_CASE();
   for (const double Kf : first_of(1, {2.2e8, 2.2e9})) {
     const auto result = consolidate(20, MOVES + "yhi pressure 0", 1.0, 0.0, Kf);
     EXPECT_LT(measured(strprintf("Kf %g, rms", Kf), result.rms), 0.01);
@@ -142,6 +143,7 @@ SERIAL_TEST(Consolidation, Converges)
 // the same in three dimensions, where the surface is anywhere in a cell, with either shape
 SERIAL_TEST(Consolidation, InThreeDimensions)
 {
+  LONG_CASE();
   for (const char *shape : {"quadratic", "cubic"})
     EXPECT_LT(terzaghi_in_space(shape, 0.2, 2.2e9, MOVES), 0.01);
 }
@@ -149,6 +151,7 @@ SERIAL_TEST(Consolidation, InThreeDimensions)
 // Where water has no time to flow through a cell, the pressure below the drained top is even
 SERIAL_TEST(Undrained, PressureIsEven)
 {
+  LONG_CASE();
   for (const double Kf : {2.2e8, 2.2e9})
     for (const double k : {1e-3, 1e-4, 1e-6, 1e-8})
       EXPECT_LT(scatter_of_pressure(Kf, k, MOVES), 0.01);

@@ -126,6 +126,7 @@ SERIAL_TEST(Retention, Functions)
 // Infiltration above a water table (Gardner): the steady profile of 0.1 K stays; then that of 0.9 K
 SERIAL_TEST(Infiltration, SrivastavaAndYeh)
 {
+  LONG_CASE();
   const double alpha = 4.0, K = 0.1, range = 0.34;
   double rms[2];
   for (const int n : {10, 20})
@@ -337,6 +338,7 @@ SERIAL_TEST(FullPores, AreAsWithoutRetention)
 // let through. No water comes in through a face with air outside, but it leaves there
 SERIAL_TEST(Surface, RainAndSeepage)
 {
+  LONG_CASE();
   const double K = 0.1;
   for (const char *top : {"yhi", "free"}) {
     Scene run(column(20,

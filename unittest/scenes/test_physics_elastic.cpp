@@ -260,6 +260,7 @@ PARAMETER_TEST(TensedBeam, Tip, const char *,
 // sides, the time is right to 0.3 % with 10 cells.
 TEST(Block, SuddenLoad)
 {
+  LONG_CASE();
   const int cells = 14, ppc = 4;
   const double h = 1.0 / cells;
   Scene run;

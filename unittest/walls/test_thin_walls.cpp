@@ -57,6 +57,7 @@ Rest rest(double h, double thickness, double top, double beyond, const std::stri
 // had no node inside (the block fell), and one of a spacing let it settle by a third more.
 TEST(ThinPlate, CarriesABlock)
 {
+  LONG_CASE();
   const double exact = 1000 * g * 0.25 / 3.0 * (1.0 - NU * NU) / E;
   struct Plate {
     double thickness, top, beyond;    // in node spacings

@@ -116,6 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Spacings, RollingDisk, ::testing::Values(0.05, 0.025));
 
 SERIAL_TEST(RollingSphere, OnAFace)
 {
+  LONG_CASE();
   expect_rigid({30, 0.3},
                roll({30, 0.3}, 0.05, "fix w all mpm/boundary ylo separate friction MU", 3), 0.02,
                0.05, 0.0);
@@ -283,6 +284,7 @@ void expect_round(const Incline &incline, const Motion &m, const std::string &wa
 // Planes that are regions, at any angle and place in a cell, are as good as faces.
 SERIAL_TEST(RoundDisk, OnRegions)
 {
+  LONG_CASE();
   constexpr double h = 0.05;
   const ScratchFile plate("plate.stl", turned_plate(30, 2.0));
   std::vector<Wall> walls = {
@@ -303,6 +305,7 @@ SERIAL_TEST(RoundDisk, OnRegions)
 // fix mpm/contact, bodies on the lattice and turned.
 SERIAL_TEST(RoundDisk, OnABody)
 {
+  LONG_CASE();
   constexpr double h = 0.05;
   expect_round(INCLINES[3], roll_round(INCLINES[3], h, {"body", "0 3.2 0 0.5", 0.0, 0.5}, true),
                "body", h);
