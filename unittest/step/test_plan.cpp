@@ -54,7 +54,8 @@ class Hashes {
   {
     std::string list;
     for (const auto &[name, value] : hash)
-      if (value != other.hash.at(name) && !writes.has(name)) list += name + " ";
+      if (!writes.has(name) && (!other.hash.count(name) || other.hash.at(name) != value))
+        list += name + " ";
     return list;
   }
 
