@@ -123,7 +123,7 @@ void prepare_kind(const PointRows &rows, const TransferStep &transfer, int n, co
       constexpr int a = decltype(which)::value;
       constexpr bool is_last = a == DIM - 1;
       V t = (x[a] - V::all(step.origin[a])) * (step.inv_h / CELL) - shift[a];
-      // as position_inside() of kernels_fast.h
+      // as position_inside() of kernels_points.h
       if constexpr (CELL > 1) t = max(t, V::all(before[a] ? 1.0 : 0.0));
       if constexpr (BOX) {
         low[a] = min(low[a], t);
