@@ -251,17 +251,17 @@ SERIAL_TEST(Moving, ExchangesTheSame)
  *  2e-2, room around them, and regions: low below the first one, right where it is said. */
 static std::string two_squares(double offset, const std::string &right, const std::string &heat)
 {
-  const std::string grid = strprintf(" mpm 0.1 dtcheck no origin %g %g\n", offset, offset);
   return plane("lj", "f f", "-0.5 2.5 -0.5 1.5", 2, 0.02) +
-      "region a block 0 1 0 1 INF INF\nregion b block 1 2 0 1 INF INF\n"
-      "region low block -1 1 -1 0 INF INF\nregion right block " +
-      right +
-      " INF INF\n"
-      "create_points 1 region a spacing 0.05\ncreate_points 2 region b spacing 0.05\n"
-      "group a type 1\ngroup b type 2\nfix ga a" +
-      grid + "fix gb b" + grid + conductor("1e-2", 1.0, "ma a") + conductor("2e-2", 1.0, "mb b") +
-      "fix touch all mpm/contact ga gb\nfix heat all mpm/heat " + heat +
-      " stages 9 transfer relax 0\n";
+      "region low block -1 1 -1 0 INF INF\nregion right block " + right + " INF INF\n" +
+      Two{"0 1 0 1",
+          "1 2 0 1",
+          strprintf("0.1 dtcheck no origin %g %g", offset, offset),
+          heat + " stages 9 transfer relax 0",
+          1.0,
+          1.0,
+          "1e-2",
+          "2e-2"}
+          .text(0.05);
 }
 
 // a contact that ends at regions of different temperatures: powers do not depend on the time step
@@ -271,8 +271,8 @@ SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
     double power[2][3];
     for (const bool is_long : {false, true}) {
       Scene run(two_squares(offset, "2 3 -1 2",
-                            "region low convection 1e3 0.0 region right temperature 2.0 "
-                            "contact ga gb conductance 1e3 source v_q") +
+                            "1e3 region low convection 1e3 0.0 region right temperature 2.0 "
+                            "source v_q") +
                 "variable q atom 1e-2*gmask(a)\n");
       run_to(run, 300.0, is_long ? 1.0 : 0.05);
       const double *const all = run.fix_vector("heat", 12);
@@ -290,11 +290,11 @@ SERIAL_TEST(Edge, BetweenTwoTemperatures)
     for (const std::string conductance : {"1", "1e8"}) {
       double power[2];
       for (const bool is_long : {false, true}) {
-        Scene run(two_squares(offset, "1 3 -1 0",
-                              "region low temperature 0.0 region right temperature 2.0 "
-                              "contact ga gb conductance " +
-                                  conductance));
+        Scene run(
+            two_squares(offset, "1 3 -1 0",
+                        conductance + " region low temperature 0.0 region right temperature 2.0"));
         run_to(run, 200.0, is_long ? 1.0 : 0.05);
+        // behind the powers of both regions, whatever the order of the conditions
         power[is_long] = measured("power", run.fix_vector("heat", 12)[CONTACT + 2]);
       }
       EXPECT_NEAR(power[1] / power[0], 1.0, 1e-3) << offset << " " << conductance;
