@@ -394,6 +394,62 @@ TEST(EnvelopeFactors, HalvesOnRanks)
   }
 }
 
+// Where places are known, a compact body is put in planes, with halves or without, on any number of
+// ranks; a slender one keeps its order.
+TEST(EnvelopeFactors, PlanesOfCompactBodies)
+{
+  const auto cells = [](int nx, int ny, int nz, std::vector<LatticeIndex> &nodes) {
+    std::vector<Eigen::Triplet<double>> entries;
+    LatticeNodes all;
+    for (int i = 0; i < nx; i++)
+      for (int j = 0; j < ny; j++)
+        for (int k = 0; k < nz; k++) all.add({i, j, k});
+    for (int c = 0; c < (int) all.index.size(); c++)
+      for (int d = 0; d < 125; d++) {
+        const auto &at = all.index[c];
+        const int other = all.find({at[0] + d / 25 - 2, at[1] + d / 5 % 5 - 2, at[2] + d % 5 - 2});
+        if (other >= 0) entries.emplace_back(other, c, other == c ? 130.0 : -1.0);
+      }
+    nodes = all.index;
+    Eigen::SparseMatrix<double> A(nodes.size(), nodes.size());
+    A.setFromTriplets(entries.begin(), entries.end());
+    return A;
+  };
+  const auto check = [&](int nx, int ny, int nz, double most_memory) {
+    std::vector<LatticeIndex> nodes;
+    const auto A = cells(nx, ny, nz, nodes);
+    Eigen::VectorXd b(A.rows()), x(A.rows());
+    for (int k = 0; k < A.rows(); k++) b[k] = std::cos(3.0 * k);
+    for (const int64_t split : {(int64_t) 0, (int64_t) 100000000}) {
+      EnvelopeFactors layers(nullptr, split), planes(nullptr, split);
+      planes.set_places(nodes, 1);
+      ASSERT_TRUE(layers.compute(A) && planes.compute(A));
+      EXPECT_EQ(planes.has_halves(), split == 0);
+      EXPECT_LT(planes.memory_usage(), most_memory * layers.memory_usage()) << nx << ' ' << split;
+      planes.solve(b.data(), x.data());
+      EXPECT_LT((A * x - b).norm(), 1e-12 * b.norm()) << nx << ' ' << split;
+    }
+    Threads team(2);
+    std::vector<Eigen::VectorXd> of_ranks(2, b);
+    EnvelopeFactors one(nullptr, 0);
+    one.set_places(nodes, 1);
+    ASSERT_TRUE(one.compute(A));
+    one.solve(b.data(), x.data());
+    std::vector<std::thread> threads;
+    for (int me = 0; me < 2; me++)
+      threads.emplace_back([&, me] {
+        ThreadRank rank(team, me);
+        EnvelopeFactors factors(&rank, 0);
+        factors.set_places(nodes, 1);
+        if (factors.compute(A)) factors.solve(of_ranks[me].data(), of_ranks[me].data());
+      });
+    for (auto &thread : threads) thread.join();
+    for (int me = 0; me < 2; me++) EXPECT_EQ((of_ranks[me] - x).norm(), 0.0) << me;
+  };
+  check(14, 14, 14, 0.8);
+  check(3, 40, 4, 1.2);
+}
+
 // Factors in single precision are those of a matrix that is near along every direction, soft ones,
 // too, in half of the memory: with halves or without, and with all instruction sets.
 TEST(EnvelopeFactors, RoundedOnes)

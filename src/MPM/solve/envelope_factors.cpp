@@ -9,6 +9,9 @@
 #include "solve/envelope_factors.h"
 
 #include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
 
 using namespace MPM_NS;
 
@@ -57,6 +60,55 @@ void EnvelopeFactors::put_in_layers(const Sparse &A)
   }
 }
 
+void EnvelopeFactors::set_places(const std::vector<LatticeIndex> &nodes, int width)
+{
+  places.clear();
+  for (const auto &node : nodes) places.insert(places.end(), width, node);
+}
+
+/** Unknowns in the order of planes across the longest axis. A layer has as many planes as entries
+ *  of the matrix reach. */
+void EnvelopeFactors::put_in_planes(const Sparse &A)
+{
+  LatticeIndex low = places[0], high = low;
+  for (const auto &place : places)
+    for (int d = 0; d < 3; d++) {
+      low[d] = std::min(low[d], place[d]);
+      high[d] = std::max(high[d], place[d]);
+    }
+  int axis[3] = {0, 1, 2};
+  std::stable_sort(axis, axis + 3, [&](int a, int b) {
+    return high[a] - low[a] > high[b] - low[b];
+  });
+  int reach = 1;
+  for (int c = 0; c < unknowns; c++)
+    for (Sparse::InnerIterator it(A, c); it; ++it)
+      reach = std::max(reach, places[it.row()][axis[0]] - places[c][axis[0]]);
+  queue.resize(unknowns);
+  std::iota(queue.begin(), queue.end(), 0);
+  std::stable_sort(queue.begin(), queue.end(), [&](int a, int b) {
+    for (const int d : axis)
+      if (places[a][d] != places[b][d]) return places[a][d] < places[b][d];
+    return false;
+  });
+  for (int c = 0; c < unknowns; c++) layer[c] = (places[c][axis[0]] - low[axis[0]]) / reach;
+}
+
+/** The number of operations that the factors take in the order of the queue, up to a factor. */
+double EnvelopeFactors::operations(const Sparse &A) const
+{
+  std::vector<int> place(unknowns);
+  for (int k = 0; k < unknowns; k++) place[queue[k]] = unknowns - 1 - k;
+  double sum = 0.0;
+  for (int c = 0; c < unknowns; c++) {
+    int first = place[c];
+    for (Sparse::InnerIterator it(A, c); it; ++it) first = std::min(first, place[it.row()]);
+    const double width = place[c] - first;
+    sum += width * width;
+  }
+  return sum;
+}
+
 /** Places of unknowns in one piece. */
 void EnvelopeFactors::put_in_order()
 {
@@ -69,8 +121,8 @@ void EnvelopeFactors::put_in_order()
   part[0] = part[1] = part[2] = padded(n);
 }
 
-/** Halves on both sides of the layer that has this one of the queue. Each is put in layers again,
- *  from the middle on, and backwards. */
+/** Halves on both sides of the layer that has this one of the queue. Each is put in layers again
+ *  (planes stay as they are), from the middle on, and backwards. */
 void EnvelopeFactors::cut(const Sparse &A, int at)
 {
   const int n = unknowns;
@@ -96,6 +148,9 @@ void EnvelopeFactors::cut(const Sparse &A, int at)
           list.push_back(k);
         }
     };
+    for (int k = from[which]; k < to[which] && in_planes; k++)
+      list.push_back(queue[which ? k : to[0] - 1 - k]);
+    for (const int k : list) listed[k] = 1;
     for (int k = low; k < high; k++) take(queue[k]);
     for (std::size_t next = 0; next < list.size(); next++) take(list[next]);
     // what is not joined to the middle
@@ -161,7 +216,16 @@ void EnvelopeFactors::fill(const Sparse &A)
 bool EnvelopeFactors::compute(const Sparse &A)
 {
   unknowns = (int) A.rows();
+  constexpr double FEWER = 0.8;
   put_in_layers(A);
+  in_planes = false;
+  if ((int) places.size() == unknowns && unknowns > 0) {
+    const auto layers = std::make_pair(queue, layer);
+    const double in_layers = operations(A);
+    put_in_planes(A);
+    in_planes = operations(A) < FEWER * in_layers;
+    if (!in_planes) std::tie(queue, layer) = layers;
+  }
   put_in_order();
   find_envelopes(A);
   if (half[0].count() > split) {
@@ -257,5 +321,6 @@ void EnvelopeFactors::solve(const double *b, double *x)
 double EnvelopeFactors::memory_usage() const
 {
   return half[0].memory_usage() + half[1].memory_usage() + middle.memory_usage() +
-      bytes_of(number, queue, layer, unused, solution, own_part, gathered, of_half[0], of_half[1]);
+      bytes_of(number, queue, layer, places, unused, solution, own_part, gathered, of_half[0],
+               of_half[1]);
 }

@@ -21,6 +21,7 @@ void WholeSystem::build(LatticeNodes all, const std::vector<MatrixBlock> &constr
   nodes = std::move(all);
   ranks.gather(constraints, constrained);
   ranks.gather(mine, blocks);
+  factors.set_places(nodes.index, width);
   assemble();
   b.resize(nodes.index.size() * width);
   x.resize(b.size());
