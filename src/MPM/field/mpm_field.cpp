@@ -29,6 +29,7 @@
 #include "field/mpm_smoothing.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
+#include "field/mpm_volume_drift.h"
 #include "force.h"
 #include "material/batch_kernels.h"
 #include "modify.h"
@@ -67,6 +68,7 @@ MPMField::MPMField(LAMMPS *lmp, Fix &fix, double h, const Options &options, MPMP
   guard.reset(new MPMGuard(lmp, *this));
   time_limit.reset(new MPMTimeLimit(lmp, *this));
   map.reset(new MPMPointMap(lmp, *this));
+  drift.reset(new MPMVolumeDrift(lmp, *this));
 }
 
 MPMField::~MPMField() = default;
@@ -137,6 +139,7 @@ void MPMField::init(MPMPlan *plan_of_all)
   nodes.clear_fields();
   slopes.clear();
   stretching.clear();
+  shares_room = false;
   frame->mean_rate = nullptr;
   jacobians.init();
 
@@ -160,6 +163,7 @@ void MPMField::init(MPMPlan *plan_of_all)
     error->all(FLERR, "Fix mpm kernels {} cannot run on this CPU or were not compiled",
                wanted ? wanted : "named by the environment variable MPM_ISA");
   if (smoothing) smoothing->init();
+  drift->init();
 }
 
 void MPMField::find_materials()
@@ -313,6 +317,7 @@ double MPMField::memory_usage() const
       nodes.memory_usage() + map->memory_usage() + frame->memory_usage() + jacobians.memory_usage();
   if (locking) bytes += locking->memory_usage();
   if (smoothing) bytes += smoothing->memory_usage();
+  bytes += drift->memory_usage();
   if (heating) bytes += heating->memory_usage();
   if (domains) bytes += domains->memory_usage();
   if (boxes) bytes += boxes->sizes.capacity() * sizeof(double);

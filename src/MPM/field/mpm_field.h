@@ -45,6 +45,7 @@ class MPMSmoothing;
 class MPMStretch;
 class MPMTimeLimit;
 class MPMTransferHeat;
+class MPMVolumeDrift;
 class MPMWatch;
 class MPMRows;
 struct MPMPoints;
@@ -85,6 +86,9 @@ class MPMField : protected Pointers {
   std::vector<MPMStretch *> stretching;
   /** det F of points, for other physics, which ask for it in their topology_changed(). */
   MPMJacobians jacobians;
+  /** Are the points at the same places as those of another field, so that their volumes do not add
+   *  up to the room? To be set by init_physics(). */
+  bool shares_room = false;
 
   // objects that only some options need; null: not with the present options
 
@@ -100,6 +104,7 @@ class MPMField : protected Pointers {
   std::unique_ptr<MPMLocking> locking;
   std::unique_ptr<MPMSmoothing> smoothing;
   std::unique_ptr<MPMTransferHeat> heating;
+  std::unique_ptr<MPMVolumeDrift> drift;    ///< never null
 
   /** Memory that stages share; nothing in it outlives a stage. */
   struct {

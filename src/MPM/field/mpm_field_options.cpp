@@ -118,6 +118,11 @@ Options MPMFieldOptions::declare(int dim)
         {number(smooth, "share", FRACTION, "",
                 "share of the roughness in the volumes of points of a fluid that is removed in the "
                 "time in which sound crosses a cell")});
+  o.add(
+      "drift",
+      {number(drift, "rate", {0.0, UNBOUNDED, true}, "1/strain",
+              "rate at which the volumes of points of liquids follow the room that they fill, per "
+              "unit of strain; 0: they do not")});
   o.add("heat", {yes_no(heat)},
         "convert kinetic energy that is lost in transfers into heat of the points");
   o.add("light",

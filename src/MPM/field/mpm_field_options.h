@@ -41,6 +41,7 @@ struct MPMFieldOptions {
   bool axisymmetric = false;      ///< 2d: x is the distance from the axis y, points are rings
   Locking locking = NO_CURE;
   double smooth = 0.0;    ///< share of rough fluid volumes removed in the time h/c; 0: none
+  double drift = 4.0;     ///< rate at which volumes of liquids follow the room, per strain; 0: none
   bool heat = false;      ///< kinetic energy that transfers lose becomes heat
   double light = 0.0;     ///< nodes with less than this share of a full cell are light; 0: none
   double origin[3] = {0.0, 0.0, 0.0};    ///< if not given: the lower corner of the box

@@ -19,6 +19,7 @@
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_volume_drift.h"
 #include "platform.h"
 
 #include <algorithm>
@@ -282,6 +283,7 @@ void MPMPlan::report(const MPMField &field, double bytes_per_point, const std::s
         deleted.points, deleted.mass, deleted.momentum[0], deleted.momentum[1],
         deleted.momentum[2]);
   utils::logmesg(lmp, field.frame->report());
+  utils::logmesg(lmp, field.drift->report());
   if (field.guard->nbad())
     utils::logmesg(lmp, "  {} bad point updates so far (policy {})\n", field.guard->nbad(),
                    field.options.bad == MPMFieldOptions::WARN ? "warn" : "delete");

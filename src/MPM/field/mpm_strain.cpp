@@ -32,7 +32,7 @@ using namespace MPM_NS;
 // Strain and stress of the points.
 
 void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPointMap::Run &run,
-                              int first, int n, const double *L, double dt)
+                              int first, int n, const double *L, double dt, bool moves)
 {
   // not through row pointers: one of them per batch is always a cache miss
   Batch &b = *field.batch;
@@ -41,7 +41,7 @@ void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
   double stretched[9 * BATCH];
   for (auto *physics : field.stretching) {
-    if (!physics->stretches(first, n)) continue;
+    if (!moves || !physics->stretches(first, n)) continue;
     if (L != stretched) std::copy_n(L, field.lattice.dim * field.lattice.dim * n, stretched);
     L = stretched;
     physics->stretch_gradients(field, first, n, dt, stretched);
@@ -59,8 +59,9 @@ void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   }
 
   double heat[BATCH];
-  if (field.heating) field.heating->give(first, n, heat);
-  material->update_batch(b, *field.batch_kernels, field.heating ? heat : nullptr);
+  const bool heats = field.heating && moves;
+  if (heats) field.heating->give(first, n, heat);
+  material->update_batch(b, *field.batch_kernels, heats ? heat : nullptr);
   if (material->watching) material->watch_ranges(b, first);
   if (field.time_limit->watch_volume) field.time_limit->note_volume_rate(b, first);
   if (!field.options.total && !material->material->uses_F()) field.batch_kernels->forget_shape(b);

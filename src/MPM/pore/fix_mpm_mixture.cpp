@@ -73,6 +73,7 @@ void FixMPMMixture::init_action()
                id, options.soil_id, options.water_id);
   for (auto *field : {mixture.soil.field, mixture.water.field}) {
     const auto &o = field->options;
+    field->shares_room = true;
     refuse_field(
         lmp, *this, *field,
         {{o.shape != QUADRATIC && o.shape != CUBIC, "this shape", "use shape quadratic or cubic"},

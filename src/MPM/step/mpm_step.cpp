@@ -17,6 +17,7 @@
 #include "field/mpm_plan.h"
 #include "field/mpm_smoothing.h"
 #include "field/mpm_transfer_heat.h"
+#include "field/mpm_volume_drift.h"
 #include "step/mpm_stages.h"
 
 using namespace LAMMPS_NS;
@@ -131,6 +132,10 @@ void begin(MPMPlan &plan)
     field.smoothing->smooth();
   };
   plan.each("smoother volumes", STATE_IN_BLOCKS, STATE, smooth, with<&Options::smooths_volumes>);
+  const auto drift = [](MPMField &field) {
+    field.drift->step();
+  };
+  plan.each("volume drift", MOTION + STATE + Data{Data::BLOCKS}, STATE + Data{Data::OWN}, drift);
   plan.place(MPMPlan::BEFORE_POINTS_TO_NODES);
   const auto add_torques = [](MPMField &field) {
     field.affine->add_torques();

@@ -1,0 +1,359 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+/* Once in a number of steps, the volumes of points of liquids change by
+ *
+ *    d ln V_p = - rate g sum_i N_ip (f_i - 1)  +  2 rate g (p_p - sum_i N_ip <p>_i)/(rho c^2)
+ *
+ *  where g is the strain since the last time, and sums are over nodes inside. The first term ties
+ *  the pressure to the places of the points: where they are too close together, it rises and drives
+ *  them apart. What single points would gather of it, unseen by the nodes, the second one spreads
+ *  over their neighbors. Both are proportional to the strain, as is the error, so that nothing
+ *  happens at rest and no time scale comes in. Why: see DECISIONS.md. */
+
+#include "field/mpm_volume_drift.h"
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "field/fix_mpm_material.h"
+#include "field/mpm_field.h"
+#include "field/mpm_frame.h"
+#include "field/mpm_passes.h"
+#include "field/mpm_point_batches.h"
+#include "field/mpm_strain.h"
+#include "force.h"
+#include "material/batch_kernels.h"
+#include "material/material.h"
+#include "update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+using namespace LAMMPS_NS;
+using namespace MPM_NS;
+
+// steps of the cycle from one look to the next, with and without a correction, and those of the
+// mean that a warning is about: waves and splashes pass in less
+static constexpr int CORRECT_EVERY = 20, LOOK_EVERY = 400, LASTING = 1000;
+static constexpr double FULL = 0.5;           // filling of the nodes around a point inside
+static constexpr double MOST_DRIFT = 0.02;    // mean difference of fillings from one: a warning
+static constexpr double DEVIATIONS = 3.0;     // standard deviations of that mean
+// greatest share of a difference that is corrected at a time, and greatest difference: a larger
+// change of the pressure would make noise
+static constexpr double MOST_SHARE = 0.1, MOST_EXCESS = 0.3;
+// regular arrays have an excess next to walls, as sums are not integrals; full effect on pressures
+static constexpr double LEAST_EXCESS = 0.0075, FULL_EXCESS = 0.1;
+
+/** Integral of the function of a node from minus infinity to t, in node spacings from the node. */
+static double integral(Shape shape, double t)
+{
+  const double a = std::fabs(t);
+  double half = 0.5;    // from 0 to a
+  if (shape == QUADRATIC) {
+    if (a < 0.5)
+      half = a * (0.75 - a * a / 3.0);
+    else if (a < 1.5)
+      half -= std::pow(1.5 - a, 3) / 6.0;
+  } else if (shape == CUBIC) {
+    if (a < 1.0)
+      half = a * (2.0 / 3.0 - a * a * (1.0 / 3.0 - a / 8.0));
+    else if (a < 2.0)
+      half -= std::pow(2.0 - a, 4) / 24.0;
+  } else if (a < 1.0) {
+    half = a - 0.5 * a * a;
+  }
+  return t < 0.0 ? 0.5 - half : 0.5 + half;
+}
+
+void MPMVolumeDrift::init()
+{
+  corrects = field.options.drift > 0.0 && !field.options.averages_strain() &&
+      std::any_of(field.materials.begin(), field.materials.end(), [this](const auto *material) {
+               return follows(material);
+             });
+  warned = false;
+  inside = {};
+}
+
+/** The pressure of other materials depends on their history, too, which a change of volume would
+ *  change for good: shocks in gases would be wrong by 5 to 10 % in density. */
+bool MPMVolumeDrift::follows(const FixMPMMaterial *material) const
+{
+  return material && material->material->is_barotropic();
+}
+
+/** Zero: where the lattice is not in space, or points share the room with others, there is nothing
+ *  to compare. */
+int MPMVolumeDrift::looks_every() const
+{
+  if (field.options.total || field.frame->mean_rate || field.shares_room) return 0;
+  return corrects ? CORRECT_EVERY : LOOK_EVERY;
+}
+
+/** Share of the integral of the function of a node along an axis that is in the box. */
+double MPMVolumeDrift::part_along(int axis, int node) const
+{
+  const auto &lattice = field.lattice;
+  if (lattice.periodic[axis]) return 1.0;
+  const double low = (domain->boxlo[axis] - lattice.origin[axis]) / lattice.h,
+               high = (domain->boxhi[axis] - lattice.origin[axis]) / lattice.h;
+  const auto plain = [&](int i) {
+    return integral(field.options.shape, high - i) - integral(field.options.shape, low - i);
+  };
+  double part = plain(node);
+  if (field.nodes.edges)    // nodes outside have given theirs to those at the face and inside
+    for (int side = 0; side < 2; side++) {
+      const int face = (int) std::lround(side ? high : low), out = side ? 1 : -1;
+      const double given = plain(face + out);
+      if (node == face + out) return 0.0;
+      if (node == face) part += 2.0 * given;
+      if (node == face - out) part -= given;
+    }
+  return part;
+}
+
+/** The same along all axes. */
+double MPMVolumeDrift::part_in_box(int64_t node) const
+{
+  int index[3];
+  field.grid.node_index(node, index);
+  double product = 1.0;
+  for (int d = 0; d < field.lattice.dim; d++) product *= part_along(d, index[d]);
+  return product;
+}
+
+/** Sums at nodes over the points with a material: work.nodes <- sum N V q and, in the fourth place,
+ *  sum N V, of the vectors q and the weights V. */
+void MPMVolumeDrift::sum_at_nodes()
+{
+  auto &work = field.work;
+  const PointRows r = field.rows_at_rest(work.vectors.data(), work.weights.data());
+  const TransferStep s = field.step_data(0.0);
+  points_to(work.nodes, field, field.pic,
+            [&](const MPMPointMap::Run &run, const int *base, int *box) {
+              if (run.material)
+                field.pic.p2g_momentum(r, s, run.first, run.last, base, field.map->tile, box);
+            });
+  field.nodes.sum(work.nodes.data(), field.pic.nreal, 0, 4);
+}
+
+/** work.vectors <- sum N q of what nodes have in their first places. */
+void MPMVolumeDrift::interpolate()
+{
+  auto &work = field.work;
+  const PointRows r = field.rows_at_rest(work.vectors.data(), work.weights.data());
+  const TransferStep s = field.step_data(0.0);
+  field.nodes.complete(work.nodes.data(), field.pic.nreal, 3);
+  points_from(work.nodes, field, field.pic, [&](const MPMPointMap::Run &run, const int *base) {
+    field.pic.g2p(r, s, run.first, run.last, base, field.map->tile_load, nullptr);
+  });
+}
+
+/** Fillings, and in work.nodes the mean velocities of the points around. With an axis of symmetry,
+ *  volumes are areas in the plane. */
+void MPMVolumeDrift::find_filling()
+{
+  auto &work = field.work;
+  const MPMFrame &frame = *field.frame;
+  const MPMRows places = frame.places();
+  work.vectors.resize(3 * (std::size_t) atom->nmax);
+  work.weights.resize(std::max(work.weights.size(), (std::size_t) atom->nmax));
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    work.weights[i] = atom->vfrac[i] * field.points->jacobian(i) / frame.circle(places[i][0]);
+    std::copy_n(atom->v[i], 3, &work.vectors[3 * (std::size_t) i]);
+  });
+  sum_at_nodes();
+  const int NREAL = field.pic.nreal;
+  const double cell = field.lattice.cell_volume();
+  fill.assign(field.grid.nnodes(), 0.0);
+  part.resize(fill.size());
+  for (std::size_t n = 0; n < fill.size(); n++) {
+    double *const record = &work.nodes[NREAL * n];
+    if (!(record[3] > 0.0)) continue;
+    part[n] = part_in_box((int64_t) n);
+    if (part[n] > 0.0) fill[n] = record[3] / (cell * part[n]);
+    for (int d = 0; d < 3; d++) record[d] /= record[3];
+  }
+}
+
+/** Strain of points from one look to the next, of the mean velocities: sqrt(2 D:D) times the
+ *  time. */
+void MPMVolumeDrift::find_strain()
+{
+  const int dim = field.lattice.dim;
+  const double duration = CORRECT_EVERY * field.step_dt();
+  const PointRows r = field.rows_at_rest(field.work.vectors.data(), field.work.weights.data());
+  const TransferStep s = field.step_data(0.0);
+  double L[9 * BATCH];
+  change.resize(atom->nmax);
+  field.nodes.complete(field.work.nodes.data(), field.pic.nreal, 3);
+  points_from(field.work.nodes, field, field.pic,
+              [&](const MPMPointMap::Run &run, const int *base) {
+                for (int i = run.first; i < run.last; i += BATCH) {
+                  const int n = std::min(BATCH, run.last - i);
+                  field.pic.g2p_gradient(r, s, i, i + n, base, field.map->tile_load, L);
+                  for (int p = 0; p < n; p++) {
+                    const double *const l = L + dim * dim * p;
+                    double square = 0.0;
+                    for (int a = 0; a < dim; a++)
+                      for (int b = 0; b < dim; b++) {
+                        const double twice = l[dim * a + b] + l[dim * b + a];
+                        square += 0.5 * twice * twice;
+                      }
+                    change[i + p] = duration * std::sqrt(square);
+                  }
+                }
+              });
+}
+
+/** Nodes outside of walls, of whose functions next to nothing is in the box, do not make a
+ *  surface. */
+void MPMVolumeDrift::mark_points_at_surfaces()
+{
+  constexpr double LITTLE = 0.25;
+  auto &work = field.work;
+  for (std::size_t n = 0; n < fill.size(); n++) {
+    double *const record = &work.nodes[field.pic.nreal * n];
+    record[0] = fill[n] < FULL && part[n] > LITTLE;
+    record[1] = record[2] = 0.0;
+  }
+  interpolate();
+}
+
+/** Sums over nodes inside. work.nodes: what a correction interpolates, the excess of volume and the
+ *  mean pressure. */
+void MPMVolumeDrift::find_inside()
+{
+  auto &work = field.work;
+  const int NREAL = field.pic.nreal;
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
+    double *const q = &work.vectors[3 * (std::size_t) i];
+    const double *const tau = field.points->tau[i];
+    q[0] = q[0] != 0.0;
+    q[1] = -(tau[0] + tau[1] + tau[2]) / (3.0 * field.points->jacobian(i));
+    q[2] = 0.0;
+  });
+  sum_at_nodes();
+  double mine[4] = {0.0}, all[4];
+  for (std::size_t n = 0; n < fill.size(); n++) {
+    double *const record = &work.nodes[NREAL * n];
+    const double excess = fill[n] - 1.0;
+    const bool is_inside = record[3] > 0.0 && record[0] == 0.0;
+    if (is_inside && field.grid.owns((int64_t) n)) {
+      mine[0] += 1.0;
+      mine[1] += part[n];
+      mine[2] += part[n] * excess;
+      mine[3] += part[n] * excess * excess;
+    }
+    record[0] = is_inside ? part[n] * excess : 0.0;
+    if (record[3] > 0.0) record[1] /= record[3];
+  }
+  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
+  inside.nodes = all[0];
+  if (all[0] == 0.0) return;
+  inside.mean = 1.0 + all[2] / all[1];
+  inside.rms = std::sqrt(all[3] / all[1]);
+}
+
+/** Warns if fillings differ from one for long, and by more than chance. */
+void MPMVolumeDrift::note(int every)
+{
+  if (inside.nodes == 0.0) return;
+  if (inside.lasting == 0.0) inside.lasting = inside.mean;
+  inside.lasting += std::min(1.0, (double) every / LASTING) * (inside.mean - inside.lasting);
+  const double drift = inside.lasting - 1.0;
+  if (warned || std::fabs(drift) < MOST_DRIFT + DEVIATIONS * inside.rms / std::sqrt(inside.nodes))
+    return;
+  warned = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm {}: inside of its bodies, the volumes of the points add up to {:.4g} "
+                   "times the room that they fill at step {}: volumes and places have drifted "
+                   "apart, and so have pressures and densities. {}",
+                   field.id(), 1.0 + drift, update->ntimestep,
+                   corrects ? "Use more points per cell, or a larger drift"
+                       : field.options.drift > 0.0
+                       ? "Check the volumes at the start; use a smaller time step or spacing, more "
+                         "points per cell, transfer apic, or frame total"
+                       : "Use fix mpm ... drift 4 for liquids");
+}
+
+void MPMVolumeDrift::step()
+{
+  const int every = looks_every();
+  if (every == 0 ||
+      ((update->ntimestep / field.options.every) % every && update->ntimestep != update->laststep))
+    return;
+  const bool now = corrects && (update->ntimestep / field.options.every) % every == 0;
+  find_filling();
+  if (now) find_strain();
+  mark_points_at_surfaces();
+  find_inside();
+  note(every);
+  if (now) correct();
+}
+
+void MPMVolumeDrift::correct()
+{
+  interpolate();
+  field.jacobians.forget();
+  for (const auto &run : field.map->runs) {
+    if (!follows(run.material)) continue;
+    for (int i = run.first; i < run.last; i += BATCH)
+      correct(run, i, std::min(BATCH, run.last - i));
+  }
+}
+
+/** The change of volume is a strain for the law, equal in all directions, at the pace of the time
+ *  between looks. Viscous stress stays. */
+void MPMVolumeDrift::correct(const MPMPointMap::Run &run, int first, int n)
+{
+  const int dim = field.lattice.dim;
+  const auto &material = *run.material;
+  const double duration = CORRECT_EVERY * field.step_dt(),
+               scale = force->mvv2e * force->nktv2p;    // of density velocity^2, in pressure units
+  int list[BATCH];
+  double c[BATCH], L[9 * BATCH] = {0.0}, before[BATCH][6];
+  std::iota(list, list + n, first);
+  load_state(field, *field.batch, list, n, &material);
+  material.material->wave_speed(*field.batch, c);
+  for (int p = 0; p < n; p++) {
+    const std::size_t i = first + p;
+    const double *const q = &field.work.vectors[3 * i], *const tau = field.points->tau[i];
+    const double J = field.points->jacobian((int) i);
+    const double size = std::max(0.0, std::min(MOST_EXCESS, std::fabs(q[0])) - LEAST_EXCESS),
+                 excess = std::copysign(size, q[0]),
+                 share = std::min(MOST_SHARE, field.options.drift * change[i]);
+    double more = -share * excess;
+    // a gas may be far from the pressure around it, and its stiffness changes as much on the way
+    const double pressure = -(tau[0] + tau[1] + tau[2]) / (3.0 * J), difference = pressure - q[1],
+                 stiffness = scale * material.material->density() / J * c[p] * c[p],
+                 least = std::fabs(difference), part = std::min(1.0, size / FULL_EXCESS);
+    if (least > 0.0) more += 2.0 * share * part * difference / std::max(stiffness, least);
+    for (int d = 0; d < dim; d++) L[(dim * p + d) * dim + d] = more / (dim * duration);
+    std::copy_n(tau, 6, before[p]);
+  }
+  update_stress(field, field.rows(), run, first, n, L, duration, false);
+  for (int p = 0; p < n; p++) {
+    double *const tau = field.points->tau[first + p];
+    const double mean = (tau[0] + tau[1] + tau[2]) / 3.0,
+                 old = (before[p][0] + before[p][1] + before[p][2]) / 3.0;
+    for (int k = 0; k < 6; k++) tau[k] = before[p][k] + (k < 3 ? mean - old : 0.0);
+  }
+}
+
+std::string MPMVolumeDrift::report() const
+{
+  if (inside.nodes == 0.0) return "";
+  return fmt::format("  inside of bodies, volumes add up to {:.4f} of the room, {:.2g} rms at "
+                     "nodes\n",
+                     inside.mean, inside.rms);
+}
