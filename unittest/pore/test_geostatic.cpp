@@ -157,6 +157,17 @@ SERIAL_TEST(Geostatic, BadInput)
       "mpm_geostatic grid 0.5\nfix w all mpm/pore 2e7 1000 9810 soil m 0.4 constant 1e-3";
   expect_error(plain + later + "\ntimestep 1e-5\nrun 0\n", "use keyword geostatic");
   Scene run(plain + later + " geostatic 0.5 1\ntimestep 1e-5\nrun 0\n");
+  // a part of a body on two lattices has not the weight of the other part
+  const std::string lattices = R"(unfix grid
+group upper region high
+group lower subtract all upper
+fix grid lower mpm 0.1
+fix fine upper mpm 0.05 origin 0.025 0.025
+)";
+  const std::string two = plain + "region high block INF INF 0.5 1 INF INF\n" + lattices;
+  const std::string refine = "fix R all mpm/refine grid fine\n", rest = "mpm_geostatic grid 0.5\n";
+  expect_error(two + refine + rest, "has only a part of the points of fix R");
+  expect_error(two + rest + refine + "timestep 1e-5\nrun 0\n", "know the weight of the other");
   const auto refused = [&](const char *what, const std::string &with, const char *why) {
     expect_error(replaced(plain, what, with) + "mpm_geostatic grid 0.5\n", why);
   };

@@ -65,13 +65,13 @@ void blocks_around(const MPMField &field, const double *x, double drift, int mor
 }
 
 /** Calls use(list, material) for lists of up to BATCH points of the field with the same material,
- *  in their order in memory. Points without material are left out. */
+ *  in their order in memory. Points without material, and nodes of elements, are left out. */
 template <class Use> void each_material_batch(const MPMField &field, const Use &use)
 {
   std::vector<int> list;
   const FixMPMMaterial *material = nullptr;
   for (int i = 0; i < field.atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
+    if (!field.is_point(i) || field.is_element_node(i)) continue;
     const auto *const mine = field.material_of(i);
     if (!list.empty() && (mine != material || list.size() == MPM_NS::BATCH)) {
       use(list, material);

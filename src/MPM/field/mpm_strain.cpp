@@ -103,7 +103,8 @@ void LAMMPS_NS::give_initial_stress(MPMField &field, int first)
   };
 
   for (int i = first; i < field.atom->nlocal; i++) {
-    if (!field.is_point(i) || std::any_of(tau[i], tau[i] + 6, [](double s) {
+    if (!field.is_point(i) || field.is_element_node(i) ||
+        std::any_of(tau[i], tau[i] + 6, [](double s) {
           return s != 0.0;
         }))
       continue;

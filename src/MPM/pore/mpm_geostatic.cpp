@@ -62,6 +62,12 @@ MPMGeostatic::MPMGeostatic(LAMMPS *lmp, MPMField &field, const double *gravity,
   warn_of_gap();
 }
 
+/** Nodes of finite elements have no stress, and are a load on the ground. */
+bool MPMGeostatic::is_ground(int i) const
+{
+  return field.is_point(i) && !field.is_element_node(i);
+}
+
 double MPMGeostatic::height(int i) const
 {
   return where.up * atom->x[i][where.axis];
@@ -103,7 +109,7 @@ void MPMGeostatic::find_ground(const double *gravity)
 
   double mine[2] = {0.0, -1.0e300}, all[2];    // points, surface
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
+    if (!is_ground(i)) continue;
     const double V = atom->vfrac[i] * field.points->jacobian(i);
     mine[0] = 1.0;
     mine[1] = std::max(mine[1], height(i) + 0.5 * pow(V, 1.0 / lattice.dim));
@@ -121,7 +127,7 @@ void MPMGeostatic::check_level()
   const MPMStencil stencil(field);
   std::vector<double> mine(nfunctions + LOWEST + BAND, 0.0), all(mine.size());
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
+    if (!is_ground(i)) continue;
     int plane;
     double w[4];
     const double t = (height(i) - where.up * lattice.origin[where.axis]) / lattice.h;
@@ -153,11 +159,11 @@ void MPMGeostatic::warn_of_gap() const
   const double h = field.lattice.h;
   double mine = 1.0e300, lowest, next;
   for (int i = 0; i < atom->nlocal; i++)
-    if (field.is_point(i)) mine = std::min(mine, height(i));
+    if (is_ground(i)) mine = std::min(mine, height(i));
   MPI_Allreduce(&mine, &lowest, 1, MPI_DOUBLE, MPI_MIN, world);
   mine = 1.0e300;
   for (int i = 0; i < atom->nlocal; i++)
-    if (field.is_point(i) && height(i) > lowest + 1.0e-3 * h) mine = std::min(mine, height(i));
+    if (is_ground(i) && height(i) > lowest + 1.0e-3 * h) mine = std::min(mine, height(i));
   MPI_Allreduce(&mine, &next, 1, MPI_DOUBLE, MPI_MIN, world);
   if (next > where.top || next - lowest < ROW * h) return;    // points are not in rows
   const double gap = (lowest - 0.5 * (next - lowest) - where.floor) / h;
@@ -253,7 +259,7 @@ void MPMGeostatic::set_stress(double K0, const std::function<double(int)> &press
 
   double mine[2] = {0.0, 0.0}, lowest[2];
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
+    if (!is_ground(i)) continue;
     const int count = parts(i, list);
     if (!count || list[0].k) continue;
     mine[0] += list[0].value * atom->rmass[i];
@@ -268,7 +274,7 @@ void MPMGeostatic::set_stress(double K0, const std::function<double(int)> &press
 
   std::vector<double> sums((BAND + 1) * n, 0.0), all(sums.size());
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
+    if (!is_ground(i)) continue;
     const double V = field.points->jacobian(i) * atom->vfrac[i];
     const int count = parts(i, list);
     for (int p = 0; p < count; p++) {
@@ -284,7 +290,7 @@ void MPMGeostatic::set_stress(double K0, const std::function<double(int)> &press
   const auto factors = solve(all, std::vector<double>(all.begin() + BAND * n, all.end()));
 
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!field.is_point(i)) continue;
+    if (!is_ground(i)) continue;
     double s = guess(i) + pressure(i);
     const int count = parts(i, list);
     for (int p = 0; p < count; p++)

@@ -72,6 +72,7 @@ class MPMGeostatic : protected Pointers {
   int first;         // lowest plane of nodes that reaches the ground
   int nfunctions;    // number of functions of the height
 
+  bool is_ground(int i) const;
   int parts(int i, Part list[BAND]) const;
   void find_ground(const double *gravity);
   void check_level();

@@ -9,6 +9,7 @@
 #include "pore/mpm_geostatic_command.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_gravity.h"
 #include "base/mpm_input.h"
 #include "base/mpm_options.h"
@@ -18,6 +19,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_point_batches.h"
 #include "force.h"
 #include "material/batch_kernels.h"
@@ -102,8 +104,17 @@ const FixMPMMixture *MPMGeostaticCommand::mixture_of(const MPMField &field)
   return nullptr;
 }
 
+/** Of a refined body, one lattice has a part of the points, and nodes at its rim belong to both. */
 void MPMGeostaticCommand::check_field(const MPMField &field)
 {
+  for (const auto *body : find_fixes<MPMRefinedBody>(lmp))
+    if (body->has(field.id()))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Mpm_geostatic: fix mpm {} has only a part of the points of fix {} (style {}), "
+                 "and the weight of the others would be missing: let the ground come to rest under "
+                 "its weight with fix mpm/relax, or use one lattice",
+                 field.id(), dynamic_cast<const Fix *>(body)->id,
+                 dynamic_cast<const Fix *>(body)->style);
   const auto &o = field.options;
   refuse_field(
       lmp, "Mpm_geostatic", field,

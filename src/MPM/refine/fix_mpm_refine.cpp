@@ -23,6 +23,7 @@
 #include "loads/fix_mpm_dashpot.h"
 #include "modify.h"
 #include "refine/mpm_two_scale.h"
+#include "step/fix_mpm.h"
 #include "walls/fix_mpm_boundary.h"
 
 #include <algorithm>
@@ -276,6 +277,15 @@ bool FixMPMRefine::decides_contact(const MPMField &field) const
 void FixMPMRefine::init_physics(MPMPlan &plan)
 {
   check_others(plan);
+  for (const auto *field : fields) {
+    const auto *const fix = dynamic_cast<const FixMPM *>(modify->get_fix_by_id(field->id()));
+    if (fix && fix->rests_dry && field->counts().steps == 0)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/refine {}: points of fix mpm {} have the stress of mpm_geostatic, which "
+                 "does not know the weight of the other lattices: let the body come to rest under "
+                 "its weight with fix mpm/relax in its place, or use one lattice",
+                 id, field->id());
+  }
   find_neighbors(plan);
 }
 
