@@ -467,3 +467,37 @@ SERIAL_TEST(Contact, BadInput)
   expect_error(replaced(scene, "static", "static slip -1"), "slip");
   expect_error(replaced(frictionless, "static", "static slip 1e-6") + "run 1\n", "there are none");
 }
+
+// where another wall holds a node, it bears the friction of the first one, in any order of the two:
+// each energy is counted once
+SERIAL_PARAMETER_TEST(Corner, LedgerCloses, const char *,
+                      Values("midpoint", "newmark", "euler", "static"))
+{
+  const std::string implicit = GetParam();
+  const char *const walls[][2] = {{"xlo slip", "ylo separate friction 0.3"},
+                                  {"ylo separate friction 0.3", "xlo slip"},
+                                  {"xlo slip friction 0.2", "ylo slip friction 0.3"},
+                                  {"region left slip", "region low separate friction 0.3"}};
+  for (const auto &[first, second] : walls)
+    for (const char *transfer : {"flip 1.0", "apic"}) {
+      if (implicit == (strcmp(transfer, "apic") == 0 ? "newmark" : "static")) continue;
+      const double at = first[0] == 'r' ? 2.0 : 0.0;
+      Scene run(
+          plane("lj", "f f", "0 12 0 10", 1, 0.3) +
+          strprintf("fix grid all mpm 1 transfer %s\nregion body block %g %g %g %g INF INF\n"
+                    "region left block INF %g INF INF INF INF\n"
+                    "region low block INF INF INF %g INF INF\n",
+                    transfer, at, at + 4, at, at + 4, at, at) +
+          "create_points 1 region body ppc 2\n"
+          "fix m all mpm/material density 1 neohookean 4.5 0.4\n" +
+          strprintf("fix w1 all mpm/boundary %s\nfix w2 all mpm/boundary %s\n", first, second) +
+          "fix g all gravity 0.045 vector 0 -1 0\nfix solve all mpm/implicit " + implicit +
+          "\ncompute e all mpm/energy\nthermo_style custom step c_e\ntimestep 0.167\nrun 8\n");
+      const double *const e = run.compute_vector("e");
+      double scale = 0.0;
+      for (int k = 0; k < 10; k++) scale = std::max(scale, std::fabs(e[k]));
+      EXPECT_LT(measured(strprintf("%s, %s, %s, %s", implicit.c_str(), transfer, first, second),
+                         std::fabs(e[10]) / scale),
+                1e-12);
+    }
+}

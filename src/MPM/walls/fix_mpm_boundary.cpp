@@ -8,6 +8,7 @@
 
 #include "walls/fix_mpm_boundary.h"
 
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
 #include "comm.h"
@@ -124,6 +125,10 @@ void FixMPMBoundary::init()
   wall.init_region();
   check_faces();
   trial.begin_run();
+  has_rubbed = false;
+  rubbing.clear();
+  for (auto *fix : find_fixes<FixMPMBoundary>(lmp))
+    if (fix->trial.has_friction()) rubbing.push_back(fix);
   thin_regions.begin_run();
   search.begin_run();
 }
@@ -266,11 +271,30 @@ void FixMPMBoundary::predict(MPMField &field, const std::vector<char> &near,
   if (const auto *list = nodes_of(field)) list->predict(near, to);
 }
 
+/** Friction that an implicit solver has found, once in a step and for all walls before any of them
+ *  holds nodes: at nodes that another wall holds, this bears the friction. */
+void FixMPMBoundary::rub(double dt)
+{
+  if (!trial.take_friction()) return;
+  has_rubbed = true;
+  update_motion(wall, nodes, dt);
+  reaction.begin_step(dt);
+  for (std::size_t k = 0; k < nodes.size(); k++) {
+    if (!trial.decides(nodes[k])) continue;
+    reaction.begin_field((int) k, true);
+    trial.apply_friction(reaction);
+    reaction.end_field();
+  }
+}
+
 void FixMPMBoundary::act(double dt, Stage stage)
 {
   const bool count = stage == STEP;
+  if (count)
+    for (auto *other : rubbing) other->rub(dt);
   update_motion(wall, nodes, dt);
-  if (count) reaction.begin_step(dt);
+  if (count && !has_rubbed) reaction.begin_step(dt);
+  if (count) has_rubbed = false;
   const MPMWallMotion in_step = wall.motion;
   if (stage == START && !wall.motion.uniform) wall.motion = in_step.at_end_of_step(dt);
   contact.decided = stage == MAPPED_BACK || stage == AGAIN;
@@ -283,7 +307,6 @@ void FixMPMBoundary::act(double dt, Stage stage)
     const bool tries = trial.decides(list);
     contact.constraints = tries ? &trial.constraints : nullptr;
     reaction.begin_field((int) k, count);
-    if (tries && count) trial.apply_friction(reaction);
     list.act(contact);
     if (tries) trial.act_on_approaches(reaction, list);
     reaction.end_field();

@@ -99,7 +99,10 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   MPMContactSearch search;
   MPMThinRegions thin_regions;
   MPMWallTrial trial;
+  std::vector<FixMPMBoundary *> rubbing;    // walls with friction
+  bool has_rubbed = false;                  // was rub() called in this step?
 
+  void rub(double dt);
   int read_place(int narg, char **arg);
   void check_field(const MPMField &) const;
   void check_faces() const;

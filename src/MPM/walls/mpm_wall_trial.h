@@ -35,11 +35,18 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   std::vector<MPMContactConstraint> constraints;
 
   /** Start of a run, without trials until they begin. */
-  void begin_run() { in_trials = false; }
+  void begin_run() { in_trials = is_due = false; }
   /** Does a solver decide the contact of these nodes? */
   bool decides(const MPMWallNodes &) const;
   /** Has a solver begun trials in this run? */
   bool has_begun() const { return in_trials; }
+  /** Has a solver found friction that has not acted in this step? True once. */
+  bool take_friction()
+  {
+    const bool was_due = is_due;
+    is_due = false;
+    return was_due;
+  }
   /** The friction acts on the nodes at the end of the step, before walls act. */
   void apply_friction(MPMWallReaction &);
   /** Holds the material that was not at the wall at the start of the step. */
@@ -75,6 +82,7 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   {
     final_velocity = v;
     friction_share = share;
+    is_due = has_friction();
   }
 
  private:
@@ -82,7 +90,7 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
   std::vector<MPMWallNodes> &fields;
   MPMContactSearch &search;
 
-  bool in_trials = false;
+  bool in_trials = false, is_due = false;
   MPMField *field = nullptr;                 // of the solver
   const double *final_velocity = nullptr;    // of nodes at the end of the step
   double dt = 0.0, slip_time = 0.0, eps = 0.0, soft = 0.0;
