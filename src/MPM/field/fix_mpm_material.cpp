@@ -11,6 +11,7 @@
 #include "base/mpm_input.h"
 #include "material/batch_kernels.h"
 #include "material/material.h"
+#include "material/material_point.h"
 
 #include "atom.h"
 #include "comm.h"
@@ -63,6 +64,30 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
 
 FixMPMMaterial::~FixMPMMaterial() = default;
 
+/** The energy of an ideal gas is that of its temperature with one specific heat alone. */
+static void check_gas(LAMMPS *lmp, const FixMPMMaterial &fix)
+{
+  constexpr double SAME = 0.02;
+  const Material &material = *fix.material;
+  if (!material.conducts() || material.describe().find("eos ideal/gas") == std::string::npos)
+    return;
+  const MaterialPoint point(material);
+  const double T = point.batch.history[fix.temperature()][0],
+               E = point.batch.history[fix.find_history("energy")][0],
+               has = material.conduction(nullptr).capacity,
+               needs = E / (material.density() * lmp->force->nktv2p * T);
+  if (T > 0.0 && std::fabs(has / needs - 1.0) <= SAME) return;
+  const std::string remedy = T > 0.0
+      ? fmt::format("use {:.6g}, or another initial temperature", needs)
+      : "its initial temperature must be absolute";
+  if (lmp->comm->me == 0)
+    lmp->error->warning(
+        FLERR,
+        "Fix mpm/material {}: with the specific heat {:.6g} the pressure of this ideal gas is not "
+        "in proportion to its temperature: {}",
+        fix.id, has, remedy);
+}
+
 void FixMPMMaterial::init()
 {
   material->initialized();
@@ -74,6 +99,7 @@ void FixMPMMaterial::init()
                    id, modify->get_fix_by_style("^mpm/mesh$").empty() ? "" : "mesh/");
   counts_stress = !modify->get_compute_by_style("^mpm/energy$").empty();
   if (material->is_of_surfaces()) check_surfaces();
+  check_gas(lmp, *this);
   assign_mass();
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked

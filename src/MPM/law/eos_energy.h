@@ -344,6 +344,9 @@ namespace {
     static void update(const LawParameters &p, Batch &b, History history)
     {
       const Gas gas = Law::gas(p);
+      const bool warms = Law::finds_temperature && p.warm > 0.0 && p.temperature >= 0;
+      double energy[BATCH];
+      for (int i = 0; warms && i < b.n; i++) energy[i] = history[ENERGY][i];
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const double J = b.J[i], Jold = b.Jold[i], half = 0.5 * b.heat[i];
@@ -357,6 +360,16 @@ namespace {
         history[ENERGY][i] = below ? Eold - mean * (J - Jold) + 2.0 * half : e + gas.pinf * J;
         history[HEATED][i] += b.heat[i];
       }
+      if (warms) follow_energy(p, b, energy, history);
+    }
+
+    /** The temperature with a thermal part changes with the energy, by work as by heat; the thermal
+     *  part adds the heat of the step. before: energy at its start. */
+    static void follow_energy(const LawParameters &p, Batch &b, const double *before,
+                              History history)
+    {
+      double *const T = temperature(p, b);
+      for (int i = 0; i < b.n; i++) T[i] += p.warm * (history[ENERGY][i] - before[i] - b.heat[i]);
     }
 
     /** The half of the heat that is added last is not compressed. */
@@ -398,6 +411,7 @@ namespace {
   struct EosIdealGas : GasLaw<EosIdealGas> {
     static constexpr const char *name = "ideal/gas";
     static constexpr const char *meaning = "ideal gas";
+    static constexpr bool finds_temperature = true;
     enum { GAMMA, P0, E0 };
     static constexpr Parameter parameters[] = {
         {"", "GAMMA", "1", {1.0, UNBOUNDED, false}, REQUIRED, "ratio of specific heats"},

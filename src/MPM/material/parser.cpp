@@ -438,8 +438,8 @@ class Parser {
       if (eos.info->finds_temperature &&
           (has_option(thermal, "gruneisen") || has_option(thermal, "melt")))
         refuse(THERMAL,
-               ": the temperature of detonation products follows from the internal energy of '" +
-                   title(eos) + "': use it without 'gruneisen' and 'melt'");
+               ": the temperature follows from the internal energy of '" + title(eos) +
+                   "': use it without 'gruneisen' and 'melt'");
       if (expands && eos.info->expands)
         refuse(THERMAL,
                ": 'expansion' does not go with '" + title(eos) +
