@@ -146,6 +146,32 @@ TEST(Force, DampingTakesTheEnergy)
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * start);
 }
 
+// A heavy atom bounces from a block by a pair style that keeps energy: what it has lost is the work
+// on the points, at any spacing. With the work at the nodes 3.1 % and 1.2 % were missing, as each
+// step smooths the velocities under the atom
+TEST(Force, WorkIsWhatAnAtomLoses)
+{
+  for (const double h : {1.0, 0.5}) {
+    Scene run(plane("lj", "p f", "0 12 0 14", 2, 0.5) +
+              strprintf("fix grid all mpm %g transfer apic\n", h) +
+              "region block block INF INF 0 8 INF INF\ncreate_points 1 region block ppc 2\n"
+              "group block type 1\nfix soft block mpm/material density 1 neohookean 100 0.3\n"
+              "fix floor all mpm/boundary ylo stick\ncreate_atoms 2 single 6.1 10.3 0\n"
+              "group heavy type 2\nset type 2 mass 120\nvelocity heavy set 0 -1 0\n"
+              "fix move heavy nve\nneigh_modify exclude type 1 1\npair_style lj/cut 2.245\n"
+              "pair_modify shift yes\npair_coeff * * 1.0 2.0\n"
+              "compute k heavy ke\nthermo_modify norm no\n" +
+              strprintf("timestep %g\n", 0.02 * h) + watch + "run 0\n");
+    const double start = run.evaluate("c_k");
+    run.commands(strprintf("run %g\n", 300 / h));
+    EXPECT_LT(run.evaluate("c_k"), 0.97 * start);
+    EXPECT_GT(run.evaluate("vcm(heavy,y)"), 0.9);    // it has come back, and let go
+    const double *e = run.compute_vector(), lost = start - run.evaluate("c_k");
+    EXPECT_NEAR(measured(strprintf("h = %g: work / loss", h), e[EXTERNAL] / lost), 1.0, 0.008);
+    EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * start);
+  }
+}
+
 // A block slides on a slab that is held: friction takes mu N d, and gives half of m v0^2 less what
 // is left. The load comes on slowly, so that nothing bounces; 2 % is asked of friction in the
 // benchmark of sliding blocks.

@@ -15,8 +15,12 @@
 #include "field/mpm_locking.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
+#include "field/mpm_point_map.h"
+#include "field/mpm_time_limit.h"
 #include "force.h"
 #include "math/matrix.h"
+
+#include <algorithm>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -52,14 +56,23 @@ double MPMLedger::point_kinetic_energy() const
 void MPMLedger::account_for_nodes()
 {
   account_for_forces();
+  note_starts();
   double old, kinetic;
   nodal_kinetic_energies(old, kinetic);
   transfer += old - kinetic_points;
   kinetic_points = kinetic;
 }
 
+/** Work of forces counts on the way that points go, see work_on_points(). The nodes have got another
+ *  work from them, because transfers smooth the old velocities: the difference is theirs. */
 void MPMLedger::account_for_points()
 {
+  if (!starts.empty()) {
+    const double work = work_on_points();
+    external += work - work_at_nodes;
+    transfer -= work - work_at_nodes;
+    starts.clear();
+  }
   const double kinetic = point_kinetic_energy();
   transfer += kinetic - kinetic_points;
   kinetic_points = kinetic;
@@ -134,8 +147,43 @@ void MPMLedger::account_for_forces()
   points_from_step(field, account, true);
 
   const double unit = force->mvv2e * s.dt;
-  external += unit * (s.force_scale * (outer - inner) - s.stress_scale * loads);
+  work_at_nodes = unit * s.force_scale * (outer - inner);
+  external += work_at_nodes - unit * s.stress_scale * loads;
   internal += unit * (s.stress_scale * stress - s.force_scale * inner);
+}
+
+/** Before points move. An implicit step finds the work on their way itself. */
+void MPMLedger::note_starts()
+{
+  starts.clear();
+  if (work_at_nodes == 0.0 || !field.time_limit->bound) return;
+  starts.resize(6 * (std::size_t) atom->nlocal);
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++) {
+      std::copy_n(atom->x[i], 3, &starts[6 * (std::size_t) i]);
+      std::copy_n(atom->v[i], 3, &starts[6 * (std::size_t) i + 3]);
+    }
+}
+
+/** Work of forces in this step on the way that points have gone, less half of what the step has
+ *  changed of their velocities: forces are those of the start of the step, and the velocities that
+ *  kinetic energies are made of belong to the middles of this step and of the one before. */
+double MPMLedger::work_on_points() const
+{
+  const double half = 0.5 * field.step_dt();
+  const double *const f = field.rows().f;
+  double sum = 0.0;
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++) {
+      const bigint row = 3 * (bigint) i;
+      const double *const x = &starts[2 * row], *const v = x + 3;
+      for (int d = 0; d < field.lattice.dim; d++) {
+        double of_others = f[row + d];
+        for (const auto *ifix : field.elements) of_others -= ifix->forces()[row + d];
+        sum += of_others * (atom->x[i][d] - x[d] - half * (atom->v[i][d] - v[d]));
+      }
+    }
+  return force->mvv2e * force->ftm2v * sum;
 }
 
 /** Is there a mass that can take it? */

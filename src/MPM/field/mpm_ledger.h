@@ -99,10 +99,15 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   double kinetic_points = 0.0;    // at the end of the last step
   // [node][3] of node actions on owned nodes in this step; empty: none
   std::vector<double> impulses;
+  // of forces in this step, at the mean of the old and the new velocity of the nodes
+  double work_at_nodes = 0.0;
+  std::vector<double> starts;    // [point][6] place and velocity before points move; empty: none
 
   double *impulse(const double *record);
   static bool change_by(double *record, const double *impulse, double change[3]);
   void account_for_forces();
+  void note_starts();
+  double work_on_points() const;
   double stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;
 };
 

@@ -17,8 +17,11 @@
 #include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
+#include "field/mpm_point_map.h"
+#include "fix.h"
 #include "force.h"
 #include "math/matrix.h"
+#include "modify.h"
 #include "neighbor.h"
 #include "update.h"
 #include "watch/mpm_point_summary.h"
@@ -29,7 +32,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// Each step looks at the forces on a part of the points, others in the next step. Whose turn it is
+// Each step looks at the forces on all points that do much of the work, such as those under a load,
+// and on a part of the others, in the next step on another part. Whose turn it is
 // follows from the ID alone: with parts by the place in memory, points would be looked at twice or
 // not at all when their order changes, and in water at rest forces are so large that this is as
 // much as the energy in play
@@ -37,6 +41,7 @@ static constexpr int SAME_TURN = 16;    // consecutive IDs, which are mostly nei
 static constexpr int MOST_BITS = 7,
                      PAIR_BITS = 4;    // one in 128, of those with contacts one in 16
 static constexpr int ENOUGH = 512;     // points in a step
+static constexpr double MUCH = 4.0;    // power of a point over the mean, that is looked at always
 // steps between looks at all energies: then all had their turn
 static constexpr int CHECK_EVERY = 7 << MOST_BITS;
 static constexpr int SHORTEST = 200;    // run in which the work is known well enough
@@ -53,6 +58,13 @@ static int turn_of(tagint tag, int bits)
   return (int) ((uint64_t) (uint32_t) (number * UINT32_C(2654435769)) >> (32 - bits));
 }
 
+void MPMEnergyWatch::start()
+{
+  run = {};
+  loads = kind_of_loads();
+  mean_power = 0.0;
+}
+
 void MPMEnergyWatch::step()
 {
   const bool centers = strain_follows();
@@ -64,8 +76,76 @@ void MPMEnergyWatch::step()
   }
   seen.clear();
   const int met = number_met();
+  if (loads != NO_LOADS) {
+    find_forces();
+    note_loaded(loads == PAIRS ? met : atom->nlocal);
+  }
   note_points(parts[0], 0, met);
   note_points(parts[1], met, atom->nlocal);
+}
+
+/** Gravity acts on all points alike, and needs no search. */
+MPMEnergyWatch::Loads MPMEnergyWatch::kind_of_loads() const
+{
+  for (auto *fix : modify->get_fix_list())
+    if ((modify->get_fix_mask(fix) & FixConst::POST_FORCE) &&
+        !utils::strmatch(fix->style, "^gravity"))
+      return ANY_LOADS;
+  return force->pair ? PAIRS : NO_LOADS;
+}
+
+/** On points in this step. */
+void MPMEnergyWatch::find_forces()
+{
+  forces.clear();
+  for (const auto *field : fields) forces.push_back(field->rows().f);
+}
+
+/** Force on a point without that of elements, which is internal. */
+void MPMEnergyWatch::force_on(int field, int i, double *f) const
+{
+  const bigint row = 3 * (bigint) i;
+  std::copy_n(forces[field] + row, 3, f);
+  for (const auto *ifix : fields[field]->elements)
+    for (int d = 0; d < 3; d++) f[d] -= ifix->forces()[row + d];
+}
+
+/** Energy that the force on a point gives or takes in a unit of time; from rest, the mean over the
+ *  step. */
+double MPMEnergyWatch::power_on(int field, int i, double half) const
+{
+  double f[3];
+  force_on(field, i, f);
+  return fabs(dot(f, atom->v[i])) + half * force->ftm2v * dot(f, f) / atom->rmass[i];
+}
+
+/** A load on a few points may do all of the work. Which power is much follows from the mean of the
+ *  step before. */
+void MPMEnergyWatch::note_loaded(int end)
+{
+  much = MUCH * mean_power;
+  const double half = 0.5 * fields[0]->step_dt();
+  double sum = 0.0;
+  bigint n = 0;
+  for (int k = 0; k < (int) fields.size(); k++) {
+    const double *const f = forces[k];
+    n += fields[k]->map->npoints();
+    for (int i = 0; i < end; i++) {
+      if (f[3 * (bigint) i] == 0.0 && f[3 * (bigint) i + 1] == 0.0 && f[3 * (bigint) i + 2] == 0.0)
+        continue;    // most points of a body on which a load acts
+      if (!fields[k]->is_point(i)) continue;
+      const double power = power_on(k, i, half);
+      sum += power;
+      if (power > much) note(k, i, 1);
+    }
+  }
+  mean_power = n ? sum / (double) n : 0.0;
+}
+
+void MPMEnergyWatch::note(int field, int i, int turns)
+{
+  const double *const x = atom->x[i], *const v = atom->v[i];
+  seen.push_back({field, i, turns, {x[0], x[1], x[2]}, {v[0], v[1], v[2]}});
 }
 
 /** Work of forces in this step, at the mean of the velocities of nodes before and after it: that is
@@ -76,17 +156,14 @@ void MPMEnergyWatch::moved()
 {
   const double half = 0.5 * fields[0]->step_dt();
   const int dim = fields[0]->lattice.dim;
-  forces.clear();
-  for (const auto *field : fields) forces.push_back(field->rows().f);
+  find_forces();
   const double *const places = seen.empty() ? nullptr : atom->x[0],
                       *const velocities = seen.empty() ? nullptr : atom->v[0];
   for (const auto &[field, i, turns, x, v] : seen) {
     const bigint row = 3 * (bigint) i;
-    const double *const f = forces[field] + row, *const x_now = places + row,
-                        *const v_now = velocities + row;
-    double now[3] = {f[0], f[1], f[2]}, work = 0.0;
-    for (const auto *ifix : fields[field]->elements)
-      for (int d = 0; d < 3; d++) now[d] -= ifix->forces()[row + d];
+    const double *const x_now = places + row, *const v_now = velocities + row;
+    double now[3], work = 0.0;
+    force_on(field, i, now);
     for (int d = 0; d < dim; d++) work += now[d] * (x_now[d] - x[d] - half * (v_now[d] - v[d]));
     if (dim < 3) work += now[2] * half * (v_now[2] + v[2]);    // around an axis of symmetry
     run.force_work += turns * work;
@@ -124,13 +201,10 @@ void MPMEnergyWatch::note_points(Part &part, int begin, int end)
     find_places(part);
   }
 
-  const double *const places = end > begin ? atom->x[0] : nullptr,
-                      *const velocities = end > begin ? atom->v[0]
-                                                      : nullptr;    // without pointers to rows
-  for (const auto &[field, i] : part.places[ahead()]) {
-    const double *const x = places + 3 * (bigint) i, *const v = velocities + 3 * (bigint) i;
-    seen.push_back({field, i, turns, {x[0], x[1], x[2]}, {v[0], v[1], v[2]}});
-  }
+  const double half = 0.5 * fields[0]->step_dt();
+  const bool searched = loads == ANY_LOADS || (loads == PAIRS && &part == parts);
+  for (const auto &[field, i] : part.places[ahead()])
+    if (!searched || !(power_on(field, i, half) > much)) note(field, i, turns);
 }
 
 void MPMEnergyWatch::find_places(Part &part) const

@@ -24,8 +24,9 @@ class MPMField;
  *  work of moving walls, rigid bodies, atoms, and deleted points is always counted. The work of
  *  friction at walls and between bodies is not: where friction holds material at rest, nodes have
  *  velocities that points do not have, and its work is mostly spurious. The work of forces on
- *  points is estimated from a part of the points in each step, chosen by their IDs, so that it does
- *  not depend on their order and on which rank has them.
+ *  points is that on all points where most of it is done, as those under a load. On the others it
+ *  is estimated from a part of them in each step, chosen by their IDs, so that it does not depend
+ *  on their order.
  *
  *  The remaining growth is the sum of the errors transfer, integration, and residual of compute
  *  mpm/energy. It counts from its lowest value in a run, so that energy that a dissipative transfer
@@ -40,7 +41,7 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   }
 
   /** Start of a run. */
-  void start() override { run = {}; }
+  void start() override;
   /** Start of a step of the cycle, where positions, velocities, and forces belong to one time. */
   void step() override;
   /** Later in the same step: points have moved and have their new velocities, and still have the
@@ -78,6 +79,10 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   const std::vector<MPMField *> &fields;
   Part parts[2];
   std::vector<const double *> forces;    // [field] on points in this step
+  // forces other than gravity on points: none, those of pair styles, any
+  enum Loads { NO_LOADS, PAIRS, ANY_LOADS } loads = NO_LOADS;
+  double much = 0.0;          // points with a larger power are looked at in each step
+  double mean_power = 0.0;    // of the last step, on this rank
   /** A point that is looked at in this step, once in so many turns, with its place and velocity
    *  before. */
   struct Seen {
@@ -99,6 +104,12 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   } run = {};
 
   int number_met() const;
+  Loads kind_of_loads() const;
+  void find_forces();
+  void force_on(int field, int i, double *f) const;
+  double power_on(int field, int i, double half) const;
+  void note_loaded(int end);
+  void note(int field, int i, int turns);
   void note_points(Part &, int begin, int end);
   void find_places(Part &) const;
   void choose_turns(const Sums &);
