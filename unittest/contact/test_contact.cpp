@@ -486,6 +486,38 @@ TEST(ManyBodies, OrderOfNamesDoesNotMatter)
   }
 }
 
+// Ten blocks in a row, the first of which hits the others: one fix for all of them does what one
+// fix for each pair of neighbors does, and keeps the momentum. A node has two bodies at most
+TEST(ManyBodies, OneFixIsAsManyAsThereAreNeighbors)
+{
+  constexpr int MANY = 10;
+  std::vector<Body> blocks;
+  std::string all, pairs;
+  for (int k = 0; k < MANY; k++) {
+    const int low = 2 + 5 * k;
+    blocks.push_back({strprintf("b%d", k), strprintf("block %d %d 2 6 -0.5 0.5", low, low + 5)});
+    all += strprintf(" F%d", k + 1);
+    if (k > 0) pairs += strprintf("fix c%d all mpm/contact F%d F%d law coulomb 0.4\n", k, k, k + 1);
+  }
+  for (const char *normal : {"colinear", "logistic"}) {
+    std::vector<Scene::State> reference;
+    for (const std::string &fixes : {pairs, "fix c all mpm/contact" + all + " law coulomb 0.4\n"}) {
+      Scene run(plane("lj", "f p", "0 60 0 8", MANY) + fields(blocks) +
+                "fix m all mpm/material density 1 neohookean 100 0.3\nvelocity b0 set 0.3 0.1 0\n" +
+                replaced(fixes, "law", strprintf("normal %s law", normal)) +
+                "timestep 0.02\nvariable p equal vcm(all,x)*mass(all)\nrun 0\n");
+      const double p = run.evaluate("v_p");
+      run.commands("run 80\n");
+      EXPECT_GT(run.evaluate("vcm(b2,x)"), 0.001);    // the blow has come there
+      EXPECT_NEAR(run.evaluate("v_p"), p, 1e-12 * p);
+      const auto state = run.gather();
+      if (reference.empty()) reference = state;
+      for (std::size_t i = 0; i < state.size(); i++)
+        for (int d = 0; d < 2; d++) EXPECT_NEAR(state[i].v[d], reference[i].v[d], 1e-12);
+    }
+  }
+}
+
 // Iterations that come to no end are told, once and with the same place for any number of ranks
 TEST(ManyBodies, TellsWhatIsNotSolved)
 {

@@ -97,7 +97,8 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
                "Fix mpm/contact needs the IDs of two or more fix mpm, one for each body");
   if (names.size() > MPMContactBodies::MOST)
     error->all(FLERR, 3 + MPMContactBodies::MOST,
-               "Fix mpm/contact takes at most {} bodies: use several", MPMContactBodies::MOST);
+               "Fix mpm/contact takes at most {} bodies, as many as LAMMPS has groups",
+               MPMContactBodies::MOST);
   read_options(lmp, options, narg, arg, iarg);
   report.set_bodies((int) names.size());
   complete();

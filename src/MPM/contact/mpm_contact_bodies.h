@@ -59,7 +59,7 @@ struct MPMContactBody {
 
 /** A block of nodes that several bodies have. */
 struct MPMSharedBlock {
-  static constexpr int MOST = 8;    ///< number of bodies
+  static constexpr int MOST = 32;    ///< number of bodies: each has a group, of which LAMMPS has 32
 
   int slot[MOST];    ///< of the block in each field; -1: none
   uint64_t canonical, owned;

@@ -268,6 +268,10 @@ void MPMContactSearch::separate_points(MPMContacts &contacts) const
       }
   }
 
+  std::vector<char> meet(nfields * nfields, 0);    // pairs of bodies, on any rank
+  for (const auto &pair : pairs) meet[pair.a * nfields + pair.b] = 1;
+  MPI_Allreduce(MPI_IN_PLACE, meet.data(), nfields * nfields, MPI_CHAR, MPI_MAX, world);
+
   std::vector<PlaneBetween> planes(pairs.size());
   std::vector<double> sums(pairs.size() * NREAL), shared;
   for (int round = 0; round < PlaneBetween::ROUNDS; round++) {
@@ -286,6 +290,7 @@ void MPMContactSearch::separate_points(MPMContacts &contacts) const
     if (comm->nprocs > 1)    // by pairs of bodies, on the nodes of the first of them
       for (int a = 0; a < nfields; a++) {
         for (int b = a + 1; b < nfields; b++) {
+          if (!meet[a * nfields + b]) continue;
           shared.assign(bodies[a].field->grid.nnodes() * NREAL, 0.0);
           for (const bool summed : {false, true}) {
             if (summed) bodies[a].field->nodes.halo->sum(shared.data(), NREAL, 0, NREAL);

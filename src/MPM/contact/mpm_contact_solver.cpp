@@ -39,7 +39,9 @@ void MPMContactSolver::solve(MPMContacts &of, double step, bool are_decided, con
   decided = are_decided;
   coupled.clear();
   for (auto &node : of.nodes) {
-    Problem problem = {&node, {}, 0};
+    Problem problem;    // velocities of bodies that are not here stay unset
+    problem.node = &node;
+    problem.group = 0;
     if (begin(node, problem.start)) {
       coupled.push_back(problem);
       continue;
