@@ -45,9 +45,14 @@ static constexpr double FLIP_OF_BODIES = 0.98;
 // NOISY. Vortices, waves, and oscillating drops with 16 cells or more in a wave have 0.03 to 0.06;
 // remains of flow in a fluid at rest, and fluid that falls or splashes, have 0.2 to 3
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
-// passes that fit the gradients of velocities with which points
-// begin: a pass leaves up to 0.58 of what is missing
-static constexpr int FITS = 30;
+// passes that fit the gradients of velocities with which points begin, at most, and their change of
+// velocities of faces, relative to the largest one, that ends them: a pass leaves up to 0.58 of what
+// is missing, and 0.9 at walls, if it takes all of the gradients that it finds, and less if it takes
+// more of their change
+static constexpr int FITS = 200;
+static constexpr double FITTED = 1.0e-12, FIT = 1.5;
+// relative difference of sums over all velocities that is no more than another order of them
+static constexpr double SAME_VELOCITIES = 1.0e-11;
 
 MPMFlow::MPMFlow(LAMMPS *lmp, const MPMIncompressibleOptions &chosen, int groupbit,
                  const std::string &id, const MPMRows &gradient) :
@@ -100,7 +105,13 @@ void MPMFlow::start()
     if (parts.stick) parts.stick->find(true);
     checks.check_depths();
   }
-  fit_gradients();
+  double size;
+  const double sum = sum_of_velocities(size);
+  is_new = !(std::fabs(sum - sum_before) <= SAME_VELOCITIES * size);
+  if (is_new) {
+    dt_before = 0.0;
+    if (gradient) fit_gradients(points_now(0.0));
+  }
   give_to_cells(parts.cells, points_now(0.0), fields.sums);
   parts.cells.sum(fields.sums.data(), 3 * parts.cells.lattice.dim + 1);
   find_velocities();
@@ -197,6 +208,9 @@ void MPMFlow::make_plan()
    before has made, within 1/(1 + R) of the duration of that step. Where the two durations differ,
    there is one solve for the velocities, and one with the forces of the former duration. The latter
    gives the pressure and, in proportion to the durations, what comes once more.
+
+   What makes velocities that points have been given a flow is an impulse at the start of the step,
+   and does not come once more.
 ------------------------------------------------------------------------- */
 
 void MPMFlow::begin_step()
@@ -210,7 +224,14 @@ void MPMFlow::begin_step()
 void MPMFlow::find_flow()
 {
   const double dt = now.dt, before = now.dt_before;
+  std::vector<double> impulse;
+  if (is_new && options.reflect > 0.0) {
+    momentum.strike();
+    impulse = parts.pressure->psi;
+    fields.initial = fields.predicted = fields.velocity;
+  }
   momentum.solve(now.part * (now.differs ? before : dt));
+  for (std::size_t k = 0; k < impulse.size(); k++) parts.pressure->psi[k] += now.part * impulse[k];
   momentum.find_pressures(now.part * (now.differs ? before : dt) *
                           liquids.acceleration_per_stress());
   if (options.reflect > 0.0) {
@@ -248,9 +269,14 @@ void MPMFlow::find_apertures()
 
 void MPMFlow::points_to_faces()
 {
+  if (is_new) find_start();
   give_to_cells(parts.cells, points_now(now.dt), fields.sums);
   parts.cells.sum(fields.sums.data(), 3 * parts.cells.lattice.dim + 1);
   find_velocities();
+  if (is_new) {
+    fields.predicted = fields.start;
+    parts.cells.reflect_velocities(fields.predicted.data());
+  }
   now.keeps = options.flip > 0.0 || options.transfer == MPMIncompressibleOptions::AUTO;
   if (now.keeps || options.reflect > 0.0 || now.differs) fields.initial = fields.predicted;
 }
@@ -265,7 +291,9 @@ void MPMFlow::faces_to_points()
 {
   double shift_energy[2] = {0.0, 0.0};
   const MPMFlowUpdate update = {options.flip,
-                                now.keeps ? fields.initial.data() : nullptr,
+                                !now.keeps   ? nullptr
+                                    : is_new ? fields.start.data()
+                                             : fields.initial.data(),
                                 options.reflect,
                                 options.reflect > 0.0 ? fields.change.data() : nullptr,
                                 options.spread > 0.0 ? fields.shift.data() : nullptr,
@@ -281,6 +309,7 @@ void MPMFlow::faces_to_points()
   parts.cells.valid = get_from_cells(parts.cells, points_now(now.dt), fields.velocity.data(),
                                      update, fields.pressures.data(), MPMPoints::get(atom)->tau);
   spreading_energy += force->mvv2e * shift_energy[0] - shift_energy[1];
+  is_new = false;
 }
 
 /** Sums over all ranks: number of ranks whose cells are not those of their points,
@@ -343,28 +372,86 @@ void MPMFlow::find_filled_volume()
 }
 
 /* ----------------------------------------------------------------------
-   Points that begin with a velocity get its gradient, too, because the lattice would otherwise get
-   a mean over a cell. Points that continue keep what they had.
+   Velocities that points have been given, before the first step or since the last one, are those of
+   no flow: they may have divergence, and go through walls. The lattice then must not take them for
+   such that a wall has stopped. An image behind the wall, with the opposite velocity, would already
+   slow down the faces next to it, and their gradients would be those of a flow that is at rest at
+   the wall.
 ------------------------------------------------------------------------- */
 
-void MPMFlow::fit_gradients()
+/** Velocities of faces as points give them, without walls. */
+void MPMFlow::find_free_velocities(const MPMFlowPoints &points)
 {
-  if (!gradient) return;
+  const int dim = parts.cells.lattice.dim, width = 3 * dim + 1;
+  give_to_cells(parts.cells, points, fields.sums);
+  parts.cells.sum_freely(fields.sums.data(), width);
+  fields.start.resize(parts.cells.size() * dim);
+  for (int64_t k = 0; k < parts.cells.size(); k++)
+    for (int c = 0; c < dim; c++) {
+      const double mass = fields.sums[k * width + dim + c];
+      fields.start[k * dim + c] = mass > 0.0 ? fields.sums[k * width + c] / mass : 0.0;
+    }
+}
+
+/** Points that begin with a velocity get its gradient, too, because the lattice would otherwise get
+ *  a mean over a cell. */
+void MPMFlow::fit_gradients(const MPMFlowPoints &points)
+{
   const int n = flow_slopes(parts.cells.lattice.dim);
-  int mine = 0, any;
-  for (int i = 0; i < atom->nlocal && !mine; i++)
-    if (parts.cells.is_point(i))
-      mine = std::any_of(gradient[i], gradient[i] + n, [](double g) {
-        return g != 0.0;
-      });
-  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
-  if (any) return;
+  for (int i = 0; i < atom->nlocal; i++)
+    if (parts.cells.is_point(i)) std::fill_n(points.gradient[i], n, 0.0);
+  std::vector<double> before;
   for (int pass = 0; pass < FITS; pass++) {
-    give_to_cells(parts.cells, points_now(0.0), fields.sums);
-    parts.cells.sum(fields.sums.data(), 3 * parts.cells.lattice.dim + 1);
-    find_velocities();
-    get_gradients(parts.cells, points_now(0.0), fields.predicted.data());
+    before.swap(fields.start);
+    find_free_velocities(points);
+    before.resize(fields.start.size());
+    double mine[2] = {0.0, 0.0}, most[2];
+    for (std::size_t k = 0; k < before.size(); k++) {
+      mine[0] = std::max(mine[0], std::fabs(fields.start[k] - before[k]));
+      mine[1] = std::max(mine[1], std::fabs(fields.start[k]));
+    }
+    MPI_Allreduce(mine, most, 2, MPI_DOUBLE, MPI_MAX, world);
+    if (pass > 0 && most[0] <= FITTED * most[1]) break;
+    get_gradients(parts.cells, points, fields.start.data(), FIT);
   }
+}
+
+/** Velocities of faces before walls stop them. Transfers without gradients need these for this step
+ *  only. */
+void MPMFlow::find_start()
+{
+  auto points = points_now(now.dt);
+  const int n = flow_slopes(parts.cells.lattice.dim);
+  std::vector<double> for_this_step;
+  if (!gradient) {
+    for_this_step.resize((std::size_t) n * atom->nlocal);
+    points.gradient = {for_this_step.data(), n};
+    fit_gradients(points);
+  }
+  find_free_velocities(points);
+}
+
+/** A sum over the momenta of the points of all ranks, with a factor of each point, so that it
+ *  differs if any of them differs. size: the sum of their magnitudes. */
+double MPMFlow::sum_of_velocities(double &size) const
+{
+  double mine[2] = {0.0, 0.0}, all[2];
+  for (int i = 0; i < atom->nlocal; i++)
+    if (parts.cells.is_point(i))
+      for (int d = 0; d < parts.cells.lattice.dim; d++) {
+        const double momentum = atom->rmass[i] * atom->v[i][d];
+        mine[0] += std::cos((double) atom->tag[i] + d) * momentum;
+        mine[1] += std::fabs(momentum);
+      }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  size = all[1];
+  return all[0];
+}
+
+void MPMFlow::end_run()
+{
+  double size;
+  if (!is_new) sum_before = sum_of_velocities(size);
 }
 
 /* ----------------------------------------------------------------------
@@ -440,13 +527,15 @@ void MPMFlow::check_speed()
   // foresee that
 
   const bool is_set = !modify->get_fix_by_style("^mpm/dt$").empty();
-  error->all(FLERR, Error::NOLASTLINE,
-             "{}: at step {} the velocity {:.6g} is more than {} node spacings in a time "
-             "step of {:.6g}; {}",
-             who, update->ntimestep, all[0], MPMFlowLattice::MOST_MOTION, update->dt,
-             is_set ? "where water hits a wall or water it is several times faster after one step: "
-                      "give fix mpm/dt a smaller fraction, such as 0.4, or a smaller max"
-                    : "reduce it, or let fix mpm/dt set it");
+  error->all(
+      FLERR, Error::NOLASTLINE,
+      "{}: at step {} the velocity {:.6g} is more than {} node spacings in a time "
+      "step of {:.6g}; {}",
+      who, update->ntimestep, all[0], MPMFlowLattice::MOST_MOTION, update->dt,
+      is_set ? "where something hits a wall, water, or a solid it is several times faster after "
+               "one step: "
+               "give fix mpm/dt a smaller fraction, such as 0.4, or a smaller max"
+             : "reduce it, or let fix mpm/dt set it");
 }
 
 double MPMFlow::stable_dt(tagint &tag) const
@@ -522,8 +611,10 @@ std::vector<double> MPMFlow::restart_data() const
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
   double last[4];
   sum_last_step(true, last);
+  double size;
+  const double sum = is_new ? sum_before : sum_of_velocities(size);
   std::vector<double> state = {dt_before,        limit, last[1], last[2], last[3],
-                               results.halvings, 0.0,   0.0};
+                               results.halvings, 0.0,   0.0,     sum};
   if (parts.regions) {
     const auto motion = parts.regions->motion();
     state[6] = (double) motion.size();
@@ -540,12 +631,13 @@ std::vector<double> MPMFlow::restart_data() const
 void MPMFlow::restart(const double *from)
 {
   const double *const state = from;
-  from += 8;
+  from += 9;
   dt_before = state[0];
   limit_before = state[1];
   for (int k = 0; k < 2; k++) unseen[k] = comm->me ? 0.0 : state[2 + k];
   spreading_energy = comm->me ? 0.0 : state[4];
   results.halvings = state[5];
+  sum_before = state[8];
   const auto nmotion = (std::size_t) state[6], ngas = (std::size_t) state[7];
   if (parts.regions) parts.regions->set_motion({from, from + nmotion});
   if (parts.gas && !parts.gas->restart(from + nmotion, ngas))

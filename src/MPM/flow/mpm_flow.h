@@ -15,6 +15,7 @@
 #include "flow/mpm_flow_momentum.h"
 #include "flow/mpm_flow_parts.h"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,8 @@ class MPMFlow : protected Pointers {
   void start();
   /** A step of duration update->dt. Collective. */
   void step() { stages.run(); }
+  /** End of a run. Collective. */
+  void end_run();
   /** The stages of a step. */
   const MPMStageList &plan() const { return stages; }
 
@@ -60,8 +63,8 @@ class MPMFlow : protected Pointers {
   double energy_of_spreading() const { return spreading_energy; }
 
   /** State for restart files: duration of the last step, limit of the next one with its forces, the
-   *  share that points keep, halvings, motion of regions, and gas; complete on the first rank.
-   *  Collective. */
+   *  share that points keep, halvings, a sum over velocities, motion of regions, and gas; complete on the
+   *  first rank. Collective. */
   std::vector<double> restart_data() const;
   /** Takes what restart_data() has given. */
   void restart(const double *from);
@@ -83,7 +86,10 @@ class MPMFlow : protected Pointers {
     double dt, dt_before, part;
     bool differs, keeps;
   } now = {};
-  double dt_before = 0.0;    // duration of the last step; 0: none so far
+  double dt_before = 0.0;    // duration of the last step; 0: none so far, or velocities are new
+  // sum_of_velocities() after the last step; infinite: none so far
+  double sum_before = std::numeric_limits<double>::infinity();
+  bool is_new = true;    // do points have other velocities than after the last step?
   // last stable_dt() with forces; after a restart, of all ranks; 0: none
   mutable double limit_before = 0.0;
   bool forces_known = false;        // false at the start of a run, when forces are cleared
@@ -109,7 +115,10 @@ class MPMFlow : protected Pointers {
   void find_velocities();
   void find_inverse_densities();
   void find_filled_volume();
-  void fit_gradients();
+  void find_free_velocities(const MPMFlowPoints &);
+  void fit_gradients(const MPMFlowPoints &);
+  void find_start();
+  double sum_of_velocities(double &size) const;
   void check_speed();
 };
 

@@ -102,6 +102,13 @@ void MPMFlowMomentum::solve(double duration)
   if (parts.tension) find_tension(duration);
 }
 
+void MPMFlowMomentum::strike()
+{
+  fields.shift.assign(fields.predicted.size(), 0.0);
+  project(0.0, rounding());
+  extend_into_air();
+}
+
 /** The same for a duration in one part. Returns the outcome of the implicit viscosity; if it has
  *  not converged, the velocities are of no use. */
 SolveReport MPMFlowMomentum::solve_part(double duration)

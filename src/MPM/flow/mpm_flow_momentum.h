@@ -27,6 +27,9 @@ class MPMFlowMomentum : protected Pointers {
   /** Finds the velocities at the end of a duration, from those at its start in
    *  MPMFlowFields::predicted, and the pressure. Collective. */
   void solve(double duration);
+  /** The same for an impulse of the pressure alone. Not with grains, inflow, gas, and bodies.
+   *  Collective. */
+  void strike();
   /** After solve(): pressures for points, and forces on walls and regions. pressure_to_psi: see
    *  MPMFlowGasRows::begin(). Collective. */
   void find_pressures(double pressure_to_psi);

@@ -205,6 +205,6 @@ double MPMFlowParts::memory_usage() const
 
 double MPMFlowFields::memory_usage() const
 {
-  return bytes_of(sums, filled, predicted, initial, velocity, known, change, pressures, shift,
-                  paths, inverse_density, face_volumes, solid_forces);
+  return bytes_of(sums, filled, predicted, initial, start, velocity, known, change, pressures,
+                  shift, paths, inverse_density, face_volumes, solid_forces);
 }

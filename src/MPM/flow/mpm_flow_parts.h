@@ -37,6 +37,9 @@ struct MPMFlowFields {
   std::vector<double> filled;       ///< [cell] share of its open surroundings that points fill
   std::vector<double> predicted;    ///< [cell][dim] velocities without the pressure
   std::vector<double> initial;      ///< [cell][dim] velocities before forces and pressure
+  /** [cell][dim] velocities that points have been given, as if there were no walls; in the first
+   *  step with them. */
+  std::vector<double> start;
   std::vector<double> velocity;     ///< [cell][dim] velocities at the end of the step
   std::vector<double> known;        ///< [cell][dim] 1 where there is a velocity, else 0
   std::vector<double> change;       ///< [cell][dim] change of velocities that points get once more

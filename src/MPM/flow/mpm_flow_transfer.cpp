@@ -538,7 +538,8 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
 }
 
 template <int dim>
-void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double *velocity)
+void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double *velocity,
+                  double share)
 {
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
@@ -548,8 +549,10 @@ void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, cons
     for (int i = run.first; i < run.last; i++) {
       places.find(points.x[i], w);
       interpolate<dim>(near.at(cells.grid.blocks[run.slot], w.base), w, v, G);
-      for (int e = 0; e < flow_slopes(dim); e++)
-        points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
+      for (int e = 0; e < flow_slopes(dim); e++) {
+        double &g = points.gradient[i][e];
+        g += share * (G[e] / unit_of<dim>(e, cells.lattice.h) - g);
+      }
     }
 }
 }    // namespace
@@ -581,8 +584,8 @@ bool LAMMPS_NS::get_from_cells(const MPMFlowLattice &cells, const MPMFlowPoints 
 }
 
 void LAMMPS_NS::get_gradients(const MPMFlowLattice &cells, const MPMFlowPoints &points,
-                              const double *velocity)
+                              const double *velocity, double share)
 {
-  cells.lattice.dim == 2 ? get_gradient<2>(cells, points, velocity)
-                         : get_gradient<3>(cells, points, velocity);
+  cells.lattice.dim == 2 ? get_gradient<2>(cells, points, velocity, share)
+                         : get_gradient<3>(cells, points, velocity, share);
 }

@@ -88,8 +88,10 @@ void give_volumes_to_faces(const MPMFlowLattice &, const MPMFlowPoints &,
 bool get_from_cells(const MPMFlowLattice &, const MPMFlowPoints &, const double *velocity,
                     const MPMFlowUpdate &, const double *pressure, MPMRows stress);
 
-/** Updates only the gradients of points. */
-void get_gradients(const MPMFlowLattice &, const MPMFlowPoints &, const double *velocity);
+/** Updates only the gradients of points: adds this share of the difference to those of the field of
+ *  velocities. */
+void get_gradients(const MPMFlowLattice &, const MPMFlowPoints &, const double *velocity,
+                   double share);
 
 }    // namespace LAMMPS_NS
 #endif
