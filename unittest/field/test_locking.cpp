@@ -483,7 +483,8 @@ TEST(Block, EnergyWithoutDamping)
 // give way, of fluids, nor of materials that have no points
 TEST(Told, Locking)
 {
-  const auto warnings = [](const std::string &material, const std::string &options = "") {
+  const auto warnings = [](const std::string &material, const std::string &options = "",
+                           const char *words = "points lock") {
     return lines_that_say(plane("si", "f f", "0 4 0 4", 1, 0.3) +
                               "region body block 1 3 1 3 INF INF\nfix grid all mpm 0.5 " + options +
                               "\ncreate_points 1 region body ppc 2\ngroup none empty\n"
@@ -491,7 +492,7 @@ TEST(Told, Locking)
                               material +
                               "\nfix n none mpm/material density 1 linear 1 0.4999\n"
                               "timestep 1e-3\nrun 1\nrun 1\n",
-                          "points lock")
+                          words)
         .size();
   };
   EXPECT_EQ(warnings("neohookean 1 0.499"), 1u);
@@ -500,4 +501,12 @@ TEST(Told, Locking)
   EXPECT_EQ(warnings("neohookean 1 0.499", "locking pressure"), 0u);
   EXPECT_EQ(warnings("neohookean 1 0.49"), 0u);
   EXPECT_EQ(warnings("eos linear 1 viscosity newtonian 0.01"), 0u);
+
+  // a cure of what does not lock makes it too soft
+  const char *const free = "averages what does not lock";
+  EXPECT_EQ(warnings("neohookean 1 0.3", "locking pressure", free), 1u);
+  EXPECT_EQ(warnings("linear 1 0.3", "locking fbar", free), 1u);
+  EXPECT_EQ(warnings("neohookean 1 0.3", "", free), 0u);
+  EXPECT_EQ(warnings("neohookean 1 0.45", "locking pressure", free), 0u);
+  EXPECT_EQ(warnings("eos linear 1 strength j2 0.5 0.01", "locking pressure", free), 0u);
 }
