@@ -7,6 +7,7 @@
 
 // Fix mpm/heat: conduction of heat in points, and heat through faces of the box.
 
+#include "elements/thin_testing.h"
 #include "heat/heat_testing.h"
 
 using namespace MPM_TEST;
@@ -597,4 +598,30 @@ SERIAL_TEST(BadInput, IsRefused)
                    "fix heat all mpm/heat\nrun 1\n",
                "thermal conducting");
   expect_error(replaced(plain, "conducting 1 0 1", "conducting 1 0") + "run 1\n", "K");
+}
+
+// nodes of finite elements have no temperature that heat could change
+SERIAL_TEST(Elements, TakeNoPart)
+{
+  const ScratchFile mesh("lines.msh", line(8, {2, 5, 0}, {6, 5, 0}).text());
+  const auto scene = [&](const std::string &of_nodes) {
+    return plane("lj", "f f", "0 8 0 8", 3, 0.1) + "fix grid all mpm 1\ncreate_points 1 mesh " +
+        mesh.name +
+        " thickness 0.1\nregion low block 1 7 1 3 INF INF\nregion high block 1 7 3 4 INF INF\n"
+        "create_points 2 region low ppc 2\ncreate_points 3 region high ppc 2\n"
+        "group g1 type 1\ngroup g2 type 2\ngroup g3 type 3\n"
+        "fix m1 g1 mpm/material density 1 linear 10 0.3 " +
+        of_nodes +
+        "\nfix m g2 mpm/material density 1 eos linear 1e-6 thermal conducting 1 0 1\n"
+        "fix m3 g3 mpm/material density 1 eos linear 1e-6\nfix e g1 mpm/elements " +
+        mesh.name + " thickness 0.1\nfix heat all mpm/heat\ntimestep 0.01\n";
+  };
+  expect_error(scene("thermal conducting 1 0 1") + "run 1\n", "nodes of fix mpm/elements");
+  Scene run(scene(""));
+  Warm warm(run);
+  warm.set(cosine());
+  const double before = warm.heat();
+  run.commands("run 20\n");
+  EXPECT_NEAR(warm.heat() / before, 1.0, 1e-12);
+  EXPECT_LT(warm.range()[1], 1.9);
 }

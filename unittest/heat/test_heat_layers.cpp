@@ -252,3 +252,127 @@ TEST(Ranks, Agree)
   EXPECT_LT(run.difference(), 1e-12);
   EXPECT_NEAR(heat_in(run.parallel) / heat_in(run.serial), 1.0, 1e-11);
 }
+
+/** Two bars of aluminum at 300 K and of a light material at 100 K, 10 mm long, that touch at x =
+ *  10 mm. more: options of fix mpm; heat: of fix mpm/heat. */
+static std::string touching_bars(double h, const std::string &more = "",
+                                 const std::string &heat = "")
+{
+  return plane("si", "f p", strprintf("0 0.02 0 %.17g", 8 * h), 2, 0.5 * h) +
+      "region r1 block 0 0.01 INF INF INF INF\nregion r2 block 0.01 0.02 INF INF INF INF\n" +
+      strprintf("create_points 1 region r1 spacing %.17g\ncreate_points 2 region r2 spacing "
+                "%.17g\ngroup g1 type 1\ngroup g2 type 2\nfix grid all mpm %.17g ",
+                0.5 * h, 0.5 * h, h) +
+      more +
+      "\nfix m1 g1 mpm/material density 1e4 eos linear 1e-5 thermal conducting 903 300 237\n"
+      "fix m2 g2 mpm/material density 1e3 eos linear 1e-5 thermal conducting 603 100 23.7\n"
+      "fix heat all mpm/heat " +
+      heat + "\n";
+}
+
+/** Temperature there after a time (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids (1959),
+ *  2.15): the interface has the mean by effusivities. */
+static double of_touching_bars(double x, double t)
+{
+  const double k[2] = {237, 23.7}, C[2] = {9.03e6, 6.03e5}, T[2] = {300, 100};
+  const double b[2] = {std::sqrt(k[0] * C[0]), std::sqrt(k[1] * C[1])},
+               at_interface = (b[0] * T[0] + b[1] * T[1]) / (b[0] + b[1]);
+  const int side = x > 0.01;
+  return at_interface +
+      (T[side] - at_interface) *
+      std::erf(std::fabs(x - 0.01) / std::sqrt(4.0 * k[side] / C[side] * t));
+}
+
+/** Largest errors of points: of all, and of those three cells from the interface. */
+static std::array<double, 2> errors_of_touching_bars(double h, const std::string &more,
+                                                     const std::string &heat)
+{
+  Scene run(touching_bars(h, more, heat));
+  Warm bars[2] = {Warm(run, "m1"), Warm(run, "m2")};
+  const double before = bars[0].heat() + bars[1].heat();
+  run_to(run, 0.1, h);
+  EXPECT_NEAR((bars[0].heat() + bars[1].heat()) / before, 1.0, 1e-13);
+  std::array<double, 2> most = {0.0, 0.0};
+  for (int i = 0; i < run.n(); i++) {
+    const double x = run.x()[i][0],
+                 error = std::fabs(bars[x > 0.01].T(i) - of_touching_bars(x, 0.1));
+    most[0] = std::max(most[0], error);
+    if (std::fabs(std::fabs(x - 0.01) / h - 3.0) < 0.5) most[1] = std::max(most[1], error);
+  }
+  return most;
+}
+
+// points next to the interface take its temperature at the rate of their own material. In the total
+// frame there are no means of conductivities
+SERIAL_PARAMETER_TEST(TouchingBars, HaveTheTemperatureOfTheInterface, const char *,
+                      Values("", "shape cubic", "frame total"))
+{
+  const bool total = strcmp(GetParam(), "frame total") == 0;
+  for (const char *heat : {"", "time sdirk2"})
+    for (const double h : {1e-3, 5e-4}) {
+      const bool coarse = h > 6e-4;
+      const auto error = errors_of_touching_bars(h, GetParam(), heat);
+      const auto name = strprintf("%s %s, %g mm: ", GetParam(), heat, 1e3 * h);
+      EXPECT_LT(measured(name + "all", error[0]), total ? 4.5 : coarse ? 17.0 : 6.5);
+      EXPECT_LT(measured(name + "at 3 cells", error[1]), total ? 4.5 : coarse ? 2.4 : 0.75);
+    }
+}
+
+// what follows fast smooths the kink of a steady temperature: not much in short steps, either, and
+// for capacities of very different size a warning tells what does not follow
+SERIAL_TEST(TouchingBars, SteadyFlowInShortSteps)
+{
+  for (const double capacity : {15.0, 100.0}) {
+    const auto scene = plate(12,
+                             {{"block 0 0.25 INF INF INF INF", 10.0, capacity},
+                              {"block 0.25 0.5 INF INF INF INF", 1.0},
+                              {"block 0.5 1 INF INF INF INF", 10.0, capacity}},
+                             4.0 / 12, 0.0);
+    EXPECT_EQ(lines_that_say(scene + "timestep 1e-4\nrun 0\n", "heat capacities").size(),
+              capacity > 16 ? 1u : 0u);
+    if (capacity > 16) continue;
+    Scene run(scene);
+    const double q = power(run, 0.25 / 144, 8.0) * 12 / 4.0 * (0.75 / 10.0 + 0.25);
+    EXPECT_NEAR(measured("flow", q), 1.0, 0.02);
+  }
+}
+
+// the same on several ranks, and on two lattices
+TEST(TouchingBars, OnRanks)
+{
+  OnRanks run(touching_bars(1e-3, "", "xlo temperature 300 xhi temperature 300") +
+                  "timestep 0.001\n",
+              "run 50\n");
+  EXPECT_LT(run.difference(), 1e-13);
+  for (const char *id : {"m1", "m2"}) {
+    Warm one(run.serial, id), all(run.parallel, id);
+    EXPECT_NEAR(all.heat() / one.heat(), 1.0, 1e-12);
+    EXPECT_NEAR(all.range()[0] / one.range()[0], 1.0, 1e-11);
+    EXPECT_NEAR(all.range()[1] / one.range()[1], 1.0, 1e-11);
+  }
+}
+
+SERIAL_TEST(TouchingBars, OnTwoLattices)
+{
+  const double h = 5e-4;
+  const auto whole = touching_bars(h);
+  const auto at = whole.find("fix grid");
+  // the interface is on the finer lattice
+  Scene run(whole.substr(0, at) +
+            "region fine block 0.009 1 INF INF INF INF\ngroup fine region fine\n"
+            "group coarse subtract all fine\n" +
+            strprintf("fix C coarse mpm %.17g\nfix F fine mpm %.17g origin %.17g %.17g\nfix R all "
+                      "mpm/refine C F\n",
+                      2 * h, h, 0.5 * h, 0.5 * h) +
+            whole.substr(whole.find("fix m1")));
+  Warm bars[2] = {Warm(run, "m1"), Warm(run, "m2")};
+  const double before = bars[0].heat() + bars[1].heat();
+  run_to(run, 0.1, h);
+  EXPECT_NEAR((bars[0].heat() + bars[1].heat()) / before, 1.0, 1e-13);
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    const double x = run.x()[i][0];
+    most = std::max(most, std::fabs(bars[x > 0.01].T(i) - of_touching_bars(x, 0.1)));
+  }
+  EXPECT_LT(measured("all", most), 10.0);
+}

@@ -631,6 +631,38 @@ TEST(Ranks, AgreeWhileBalanced)
   }
 }
 
+// where a surface goes through nodes, round-off decides between which of them it is found, on ranks
+// that sum in another order, or when it moves a little: the area must be the same
+TEST(SurfaceInNodes, HasOneArea)
+{
+  double power[3];
+  for (const int k : {0, 1, 2}) {
+    const double at = 0.01 + (k - 1) * 1e-12;
+    Scene run(plane("si", "f f", "0 0.14 0 0.12", 1, 0.005) +
+              strprintf("region r1 block %.17g %.17g %.17g %.17g INF INF\n", at, at + 0.05,
+                        0.02 + (k - 1) * 1e-12, 0.07 + (k - 1) * 1e-12) +
+              "create_points 1 region r1 spacing 0.005\nfix grid all mpm 0.01 origin 0 0\n"
+              "fix m all mpm/material density 2000 eos linear 1e-6 thermal conducting 2 300 33\n"
+              "fix heat all mpm/heat surface flux 3e4\ntimestep 1e-6\nrun 1\n");
+    power[k] = run.fix_vector("heat", 10)[9];
+  }
+  measured("power", power[1]);
+  EXPECT_NEAR(power[0] / power[1], 1.0, 1e-8);
+  EXPECT_NEAR(power[2] / power[1], 1.0, 1e-8);
+}
+TEST(SurfaceInNodes, IsTheSameOnRanks)
+{
+  const std::string scene = plane("si", "f f", "0 0.14 0 0.12", 1, 0.005) +
+      "fix grid all mpm 0.01 frame total\nregion r1 block 0.01 0.06 0 0.05 INF INF\n"
+      "create_points 1 region r1 ppc 2\nvelocity all set -1.4 -1.9 0\n"
+      "fix m all mpm/material density 2000 neohookean 1e7 0.4 thermal conducting 2 300 33\n"
+      "fix w all mpm/boundary xlo slip\nfix heat all mpm/heat surface flux 3e4\n"
+      "fix dt all mpm/dt 0.2\n";
+  OnRanks run(scene, "run 20\n", "fix even all balance 4 1.0 shift xy 3 1.05\n");
+  EXPECT_LT(run.difference(), 1e-11);
+  EXPECT_NEAR(heat_in(run.parallel) / heat_in(run.serial), 1.0, 1e-11);
+}
+
 // the area of a disk is the same wherever it crosses periodic faces, on any number of ranks
 TEST(Ranks, AgreeAcrossPeriodicFaces)
 {

@@ -39,6 +39,7 @@ MPMLeaks LAMMPS_NS::find_leaks(MPMField &field, MPI_Comm world,
   std::vector<double> sums(NREAL * field.grid.nnodes(), 0.0);
   const MPMStencil stencil(field);
   for (const auto &run : field.map->runs) {
+    if (!run.material) continue;    // nodes of elements
     const auto &block = field.grid.blocks[run.slot];
     const bool through = conducts(run.material);
     for (int i = run.first; i < run.last; i++) {

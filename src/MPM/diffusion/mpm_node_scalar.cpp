@@ -264,7 +264,7 @@ void MPMNodeScalar::add_up(const GiveValues &give, std::vector<double> &nodes)
     give(run, first, n, values);
     kernels.add_values(stencil, values, tiles[0].data());
   });
-  sum(nodes);
+  if (!is_level) sum(nodes);
 }
 
 double MPMNodeScalar::memory_usage() const
@@ -306,16 +306,4 @@ double LAMMPS_NS::steepest_function(const MPMField &field)
     steepest = std::max(steepest, sum);
   }
   return steepest;
-}
-
-std::vector<signed char> LAMMPS_NS::present_materials(const MPMField &field, MPI_Comm world)
-{
-  std::vector<signed char> mine(field.materials.size(), 0), all(mine.size());
-  for (int i = 0; i < field.atom->nlocal; i++) {
-    const auto *const material = field.is_point(i) ? field.material_of(i) : nullptr;
-    for (std::size_t k = 0; k < mine.size() && material; k++)
-      if (field.materials[k] == material) mine[k] = 1;
-  }
-  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
-  return all;
 }

@@ -69,8 +69,8 @@ class MPMNodeScalar {
   std::vector<double> capacity, volume, value, before, rate;
 
   /** True if nodes of this field and of others exchange sums before ranks are summed
-   *  (MPMHeatLevels): points_to_nodes() and find_rates() then leave the sums over this rank's
-   *  points, until sum_nodes(), keep(), and sum_rates() are called. */
+   *  (MPMHeatLevels): points_to_nodes(), find_rates(), and add_up() then leave the sums over this
+   *  rank's points, until sum_nodes(), keep(), and sum_rates() are called. */
   bool is_level = false;
 
   explicit MPMNodeScalar(MPMField &field) : field(field) {}
@@ -145,8 +145,6 @@ class MPMNodeScalar {
 void activate_blocks_around(MPMField &, const std::function<bool(const int *)> &wanted = nullptr);
 /** Largest sum of (dN/dx)^2/N over the nodes of a point along an axis, x in node spacings. */
 double steepest_function(const MPMField &);
-/** [materials of the field] Has any rank points of it? Collective. */
-std::vector<signed char> present_materials(const MPMField &, MPI_Comm);
 
 /** Raises most to the greatest of itself and a[p]/b[p] of n points, b > 0. Does not divide where
  *  most is not exceeded. */

@@ -255,6 +255,44 @@ FixMPMMaterial *MPMField::material_of(int i) const
   return nullptr;
 }
 
+std::vector<signed char> MPMField::present_materials() const
+{
+  std::vector<signed char> mine(materials.size(), 0), all(mine.size());
+  const auto note = [&](const FixMPMMaterial *material) {
+    for (std::size_t k = 0; k < mine.size() && material; k++)
+      if (materials[k] == material) mine[k] = 1;
+  };
+  for (int i = 0; i < atom->nlocal; i++)
+    if (is_point(i)) note(material_of(i));
+  for (const auto *inlet : modify->get_fix_by_style("^mpm/emit$")) {
+    const int groups = 1 | inlet->groupbit;    // of its points
+    const auto has = [groups](const FixMPMMaterial *material) {
+      return (material->groupbit & groups) != 0;
+    };
+    const auto its = std::find_if(materials.begin(), materials.end(), has);
+    if ((fix.groupbit & groups) && its != materials.end()) note(*its);
+  }
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_SIGNED_CHAR, MPI_MAX, world);
+  return all;
+}
+
+void MPMField::refuse_element_nodes(const Fix &user, const std::string &what,
+                                    const std::function<bool(const FixMPMMaterial *)> &wants) const
+{
+  int mine = -1, any;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!is_point(i) || !is_element_node(i)) continue;
+    const auto *const material = material_of(i);
+    for (std::size_t k = 0; k < materials.size(); k++)
+      if (materials[k] == material && wants(material)) mine = (int) k;
+  }
+  MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
+  if (any >= 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix {} {}: points of fix mpm/material {} are nodes of fix mpm/elements, {}",
+               user.style, user.id, materials[any]->id, what);
+}
+
 double MPMField::step_dt() const
 {
   return every ? every->step_dt() : update->dt;

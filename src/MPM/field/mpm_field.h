@@ -17,6 +17,7 @@
 #include "pointers.h"
 #include "transfer/kernels.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -147,6 +148,14 @@ class MPMField : protected Pointers {
   bool is_element_node(int i) const;
   /** The material of atom i; null: it has none. */
   FixMPMMaterial *material_of(int i) const;
+  /** [materials] Has any rank points of it, or will a fix mpm/emit bring some? What a run finds out
+   *  at its start must not depend on points that come a moment later. Collective. */
+  std::vector<signed char> present_materials() const;
+  /** Stops with an error if nodes of finite elements have a material that something else wants to
+   *  act on: they have no state that it could change. what: about these nodes, and the remedy.
+   *  Collective. */
+  void refuse_element_nodes(const Fix &user, const std::string &what,
+                            const std::function<bool(const FixMPMMaterial *)> &wants) const;
 
   /** Duration of a step of the cycle. */
   double step_dt() const;

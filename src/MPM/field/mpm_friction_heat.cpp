@@ -76,11 +76,7 @@ void MPMFrictionHeat::begin_run(const Fix &user, const std::vector<MPMField *> &
   bool any = false, points = false;
   for (auto *field : fields) {
     Body body = {field, false, false, false, 0.0, {}};
-    std::vector<int> mine(field->materials.size(), 0), here(mine.size());    // of its points
-    for (int i = 0; i < atom->nlocal; i++)
-      for (std::size_t k = 0; k < mine.size(); k++)
-        if (field->is_point(i) && (atom->mask[i] & field->materials[k]->groupbit)) mine[k] = 1;
-    MPI_Allreduce(mine.data(), here.data(), (int) here.size(), MPI_INT, MPI_MAX, world);
+    const std::vector<signed char> here = field->present_materials();
     int nhere = 0, nconducting = 0;
     for (std::size_t k = 0; k < here.size(); k++) {
       if (!here[k]) continue;

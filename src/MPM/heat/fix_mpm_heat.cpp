@@ -246,6 +246,12 @@ void FixMPMHeat::init_physics(MPMPlan &plan)
                  {{o.total && touches, "frame total with contact",
                    "its nodes are not where the body is, and do not know where bodies touch: use "
                    "frame updated"}});
+    field->refuse_element_nodes(*this,
+                                "through which no heat goes: give them a fix mpm/material without "
+                                "thermal conducting",
+                                [](const FixMPMMaterial *of) {
+                                  return of->material->conducts();
+                                });
     if (gradients) field->slopes.push_back(&gradients);
     flow.add(*field);
   }

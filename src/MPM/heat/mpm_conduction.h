@@ -100,6 +100,12 @@ class MPMConduction : protected Pointers {
   /** Calls the argument with the contribution of each point of this rank to the matrix of
    *  conduction, see MPMDiffusion::Term. */
   void each_term(const MPMDiffusion::Term &) const;
+  /** Transfer relax, before nodes_to_points(): what points of some materials keep decays faster
+   *  than what all of them do. Do the materials of the field differ so? The same on all ranks. */
+  bool has_faster() const;
+  /** Leaves in rate what the heat that these points give to their nodes changes the temperatures
+   *  there by; on the lattice of a level the sums over the points of this rank. Collective. */
+  void find_faster();
   /** Last part of a step: temperatures of points; returns the heat that they have got [energy]. */
   double nodes_to_points(const MPMRows &gradients);
   /** Largest values of points, which determine for how long conduction may wait. */
@@ -152,6 +158,9 @@ class MPMConduction : protected Pointers {
   /** Rate at which heat crosses a cell in the material that conducts least [1/time]. */
   double crossing_rate() const { return slowest / (field.lattice.h * field.lattice.h); }
   double slowest_crossing = 0.0;    ///< lowest rate of the lattices of a body; 0: own
+  /** Share of its own rate at which a material relaxes where capacities have this ratio. */
+  static double share_of_own_rate(double ratio);
+  double widest_cell = 0.0;    ///< largest node spacing of the lattices of a body; 0: own
 
   double least_capacity = 0.0;    ///< per volume, of the materials that conduct; 0: there are none
   /** Bound of the rates of conduction for this rank's points [1/time]; tag: the point that limits
@@ -177,6 +186,7 @@ class MPMConduction : protected Pointers {
     bool varies;                // from point to point
     bool jumps;                 // its conductivity depends on the temperature, and it melts
     MPM_NS::Conduction all;     // of all points; if it varies, the mean
+    double diffusivity;         // of the mean, along the axis that conducts least
     /** Values of point i. buffer: memory for these if they vary. */
     const MPM_NS::Conduction &at(int i, MPM_NS::Conduction &buffer) const
     {
@@ -190,6 +200,7 @@ class MPMConduction : protected Pointers {
   bool wants_volumes = false;
   // smallest diffusivity of a material, times the ratio of the least and the greatest capacity
   double slowest = 0.0;
+  double own_share = 1.0;    // of its own rate that a material has, see share_of_own_rate()
   // largest sum of (dN/dx)^2/N of B-splines, see the top of mpm_conduction.cpp [1/area]; 0: no
   // bound by points alone
   double steepest = 0.0;
@@ -238,6 +249,8 @@ class MPMConduction : protected Pointers {
   }
   bool is_present(const Thermal &t) const { return present[index_of(t.fix)]; }
   void keep_present(const std::vector<signed char> &all);
+  double crossings() const;
+  double crossings_of(const Thermal &) const;
   double volume_of(int i) const;
   const MPM_NS::Conduction &conduction_of(const Thermal &, int i, MPM_NS::Conduction &buffer) const;
   void find_ranges();

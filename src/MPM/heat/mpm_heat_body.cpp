@@ -68,6 +68,10 @@ static constexpr double ENOUGH = 0.5;
 // length of the mean of unit normals from which on a surface is no
 // edge: that of two normals that differ by 36 degrees
 static constexpr double STRAIGHT = 0.95;
+// node spacings before the end of functions in which the weight of a node goes to zero: next to an
+// edge it has the gradient of the other surface, and where a place reaches as far on one side as on
+// the other, round-off decides which of two nodes is the last one
+static constexpr double END = 0.05;
 // gaps up to which all heat goes through, and from which on none does, in node spacings
 static constexpr double TOUCHES = 0.2, IS_APART = 0.4, MORE_WITH_LINEAR = 0.1;
 
@@ -151,12 +155,14 @@ bool MPMHeatBody::make_line(int axis, const int *base, double at, const double *
   line.axis = axis;
   line.n = spreads() ? MPMStencil::quadratic(at, first, w)
                      : MPMStencil(field).weights(at, first, w);
+  const double reach = 0.5 * line.n;
   for (int k = 0; k < line.n; k++) {
     index[axis] = lattice.wrap(axis, first + k);
     const int64_t node = line.node[k] = grid.locate(index);
     if (node < 0 && !knows_all()) return false;
     const double *const G = node < 0 ? nullptr : &gradient[3 * node];
     line.weight[k] = G ? std::max(0.0, -MathExtra::dot3(into, G)) : 0.0;
+    line.weight[k] *= std::clamp((reach - std::fabs(first + k - at)) / END, 0.0, 1.0);
     sum += line.weight[k];
     moment += line.weight[k] * (first + k);
   }

@@ -362,6 +362,35 @@ void MPMHeatFlow::report() const
                  iterations[LINEAR] / std::max(1.0, iterations[NEWTON]));
 }
 
+/** Heat of what points of different materials keep at different rates (transfer relax) goes to all
+ *  points of their nodes. */
+void MPMHeatFlow::let_faster_points_go()
+{
+  const auto add = [](MPMConduction &field) {
+    for (std::size_t k = 0; k < field.rate.size(); k++) field.temperature[k] += field.rate[k];
+  };
+  for (auto &field : fields) {
+    if (!field->conducts() || levels_with(*field) || !field->has_faster()) continue;
+    field->find_faster();
+    add(*field);
+  }
+  for (auto &levels : refined) {
+    const auto is_part = [&](const auto &field) {
+      return field->conducts() && levels->has(*field);
+    };
+    if (std::none_of(fields.begin(), fields.end(), [&](const auto &field) {
+          return is_part(field) && field->has_faster();
+        }))
+      continue;
+    for (auto &field : fields)
+      if (is_part(field)) field->find_faster();
+    levels->sum_rates();
+    for (auto &field : fields)
+      if (is_part(field)) add(*field);
+    levels->temperatures_from_parents();
+  }
+}
+
 void MPMHeatFlow::conduct()
 {
   for (auto &field : fields) field->duration = waited.time;
@@ -380,6 +409,7 @@ void MPMHeatFlow::conduct()
     steps.advance(stages, dt_last, [this]() {
       find_rates();
     });
+  let_faster_points_go();
   for (auto &field : fields) {
     if (field->conducts()) totals.got += field->nodes_to_points(gradients);
     field->given.clear();
@@ -590,19 +620,6 @@ MPMHeatBody &MPMHeatFlow::body_in(const MPMField &field)
   return *bodies.back();
 }
 
-/** Does a field have points that conduct, on any rank? */
-static bool has_conducting_points(const MPMField &field, MPI_Comm world)
-{
-  const Atom &atom = *field.atom;
-  int any = 0, all;
-  for (int i = 0; i < atom.nlocal && !any; i++) {
-    const auto *const fix = field.is_point(i) ? field.material_of(i) : nullptr;
-    any = fix && fix->material->conducts();
-  }
-  MPI_Allreduce(&any, &all, 1, MPI_INT, MPI_MAX, world);
-  return all;
-}
-
 /** Finds bodies that touch: they hide free surfaces of each other, even if they do not conduct. */
 void MPMHeatFlow::find_neighbors()
 {
@@ -669,7 +686,11 @@ void MPMHeatFlow::init_contacts()
                    "Fix mpm/heat contact {} {}: there is no fix mpm with the ID {}", p.field[0],
                    p.field[1], p.field[k]);
       body[k] = &body_in(*of);
-      if (!has_conducting_points(body[k]->field, world))
+      const auto here = of->present_materials();
+      bool any = false;
+      for (std::size_t m = 0; m < here.size(); m++)
+        any = any || (here[m] && of->materials[m]->material->conducts());
+      if (!any)
         error->all(FLERR, Error::NOLASTLINE,
                    "Fix mpm/heat contact {} {}: no material of fix mpm {} conducts heat: give it "
                    "the part 'thermal conducting', or remove the contact",

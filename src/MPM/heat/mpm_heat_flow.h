@@ -183,6 +183,7 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   void find_changes() override;
   void project(int part, std::vector<double> &change) override;
   void each_term(int part, double dt, const Term &) override;
+  void let_faster_points_go();
   void solve();
 };
 

@@ -119,6 +119,7 @@ double MPMHeatLevels::points_to_nodes(const MPMRows &gradients, bool starts)
   for (const auto *level : levels) slowest = std::min(slowest, level->crossing_rate());
   for (auto *level : levels) {
     level->slowest_crossing = slowest;
+    level->widest_cell = levels[0]->field.lattice.h;
     level->add_points(gradients, starts);
   }
   to_parents([&](const Pair &pair, const MPMTwoScale *finer) {

@@ -298,10 +298,12 @@ void MPMHeatSurfaces::find_free(int condition, MPMHeatThin *thin)
       part_full[k] = full[k] > LEAST_FILLED ? (k ? there : here) / full[k] : 0.0;
     }
     if ((part_full[0] < 0.5) == (part_full[1] < 0.5)) return;
-    const double most = here < there ? full[1] : full[0];
     const double depth = body.profile.depth_of_volume(part_full[0]),
                  depth_next = body.profile.depth_of_volume(part_full[1]);
     const double part = depth / (depth - depth_next);
+    // for a surface at a node, round-off decides which of the two pairs of this node has it: both
+    // must then give it the same area
+    const double most = full[0] + part * (full[1] - full[0]);
     double x[3], into[3] = {0.0, 0.0, 0.0}, side = 1.0;
     lattice.node_position(index, x);
     x[a] += part * h;

@@ -138,12 +138,13 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
     const auto &material = *fix->material;
     if (!material.conducts()) continue;
     const Conduction c = material.conduction(nullptr);
-    thermals.push_back({fix, fix->temperature(), fix->molten(), material.conduction_varies(),
-                        fix->molten() >= 0 && conductivity_varies_with_temperature(material), c});
     const double volumetric = material.density() * c.capacity;
     const double slowest = c.orthotropic
         ? std::min(c.conductivity, std::min(c.across[0], c.across[1]))
         : c.conductivity;
+    thermals.push_back({fix, fix->temperature(), fix->molten(), material.conduction_varies(),
+                        fix->molten() >= 0 && conductivity_varies_with_temperature(material), c,
+                        slowest / volumetric});
     relaxed = std::min(relaxed, slowest / volumetric);
     least = std::min(least, volumetric);
     greatest = std::max(greatest, volumetric);
@@ -153,6 +154,9 @@ void FixMPMMeshHeat::begin_run(const BackgroundMesh &mesh)
                "Fix mpm/mesh/heat {}: no fix mpm/material has a part thermal conducting", id);
   layers_known = false;
   relaxed *= least / greatest;    // see the top of mpm_conduction.cpp
+  for (auto &t : thermals)
+    t.diffusivity =
+        std::max(relaxed, MPMConduction::share_of_own_rate(greatest / least) * t.diffusivity);
   largest = 0.0;
   for (const auto &cell : mesh.cells) largest = std::max(largest, cell.height);
 
@@ -459,13 +463,43 @@ void FixMPMMeshHeat::advance(MPMMeshBody &of, double dt)
     if (capacity[node] > 0.0) value[node] += dt * rate[node] / capacity[node];
 }
 
-/** Temperatures of points. */
-void FixMPMMeshHeat::take(MPMMeshBody &of, double dt)
+/** What points of a material that conducts faster than others lose of their own temperature goes to
+ *  their nodes, see the top of mpm_conduction.cpp. */
+void FixMPMMeshHeat::let_faster_points_go(MPMMeshBody &of, double dt)
 {
-  const double keep = std::exp(-dt * relaxed / (largest * largest));
+  if (std::none_of(thermals.begin(), thermals.end(), [this](const Thermal &t) {
+        return t.diffusivity > relaxed;
+      }))
+    return;
+  for (const int node : of.ranks.nodes) rate[node] = 0.0;
   for (const auto &p : conducting) {
     const auto &place = of.places[p.i];
     const auto &cell = of.mesh.cells[place.cell];
+    double hidden = p.thermal->fix->history[p.i][p.thermal->temperature];
+    for (int k = 0; k < cell.nnode; k++) hidden -= place.N[k] * before[cell.node[k]];
+    const double heat =
+        p.capacity * hidden * (kept(relaxed, dt) - kept(p.thermal->diffusivity, dt));
+    for (int k = 0; k < cell.nnode; k++) rate[cell.node[k]] += place.N[k] * heat;
+  }
+  of.ranks.sum(rate.data(), 1);
+  for (const int node : of.ranks.nodes)
+    if (capacity[node] > 0.0) value[node] += rate[node] / capacity[node];
+}
+
+/** Share of a difference over a cell that is left after a time. */
+double FixMPMMeshHeat::kept(double diffusivity, double dt) const
+{
+  return std::exp(-dt * diffusivity / (largest * largest));
+}
+
+/** Temperatures of points. */
+void FixMPMMeshHeat::take(MPMMeshBody &of, double dt)
+{
+  let_faster_points_go(of, dt);
+  for (const auto &p : conducting) {
+    const auto &place = of.places[p.i];
+    const auto &cell = of.mesh.cells[place.cell];
+    const double keep = kept(p.thermal->diffusivity, dt);
     double *const history = p.thermal->fix->history[p.i], &T = history[p.thermal->temperature];
     double *const slope = gradients[p.i], now = keep * T;
     std::fill_n(slope, 3, 0.0);

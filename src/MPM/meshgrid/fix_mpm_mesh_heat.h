@@ -72,6 +72,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
     bool varies;
     bool jumps;                // its conductivity depends on the temperature, and it melts
     MPM_NS::Conduction all;    // conduction of all points, or its mean
+    double diffusivity;        // with which its points relax to what nodes have
   };
   struct Point {
     int i;
@@ -97,7 +98,7 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   std::vector<Thermal> thermals;
   std::vector<NodeCondition> conditions_at_nodes;
   double largest = 0.0;    // largest height of a cell
-  double relaxed = 0.0;    // diffusivity with which points relax to the temperature of the nodes
+  double relaxed = 0.0;    // diffusivity with which all points relax to what nodes have
   std::vector<Point> conducting;
   std::vector<double> capacity, value, before, rate, sums;    // of nodes
   std::vector<char> held;       // [node] is the temperature prescribed?
@@ -118,6 +119,8 @@ class FixMPMMeshHeat : public FixMPMState, private MPMMeshHeatOptions {
   double fill_nodes(MPMMeshBody &);
   void hold(MPMMeshBody &);
   void advance(MPMMeshBody &, double dt);
+  void let_faster_points_go(MPMMeshBody &, double dt);
+  double kept(double diffusivity, double dt) const;
   void take(MPMMeshBody &, double dt);
 };
 

@@ -176,6 +176,12 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   find_seals();
   if (!options.sets_every) options.every = flow.needs_each_step() ? 1 : MPMPoreOptions::AUTO;
   for (auto *field : plan.fields) {
+    field->refuse_element_nodes(*this,
+                                "which have no pores: give them a fix mpm/material of their own, "
+                                "without a keyword soil",
+                                [this](const FixMPMMaterial *of) {
+                                  return options.has(of->id);
+                                });
     auto &mine = flow.add(*field);
     if (options.seals)
       mine.surface.distance_to_seals = [this](const double *x, double far) {

@@ -82,7 +82,7 @@ void MPMPore::init(const std::vector<MPMPoreSoil> &all, double *const &content,
   soils.clear();
   quadratic.clear();
   bool dries = false;
-  const std::vector<signed char> here = present_materials(field, world);
+  const std::vector<signed char> here = field.present_materials();
   slowest = waves = least_storage = std::numeric_limits<double>::max();
   of_storage = 0.0;
   for (std::size_t k = 0; k < here.size(); k++)
