@@ -250,6 +250,18 @@ static std::string next_of(const std::string &start, const std::string &surface,
   return set_by_hand + start.substr(0, start.find('\n') + 1) + fixes + surface + last;
 }
 
+// LAMMPS has another cutoff for each mode, and forgets it when the mode changes
+SERIAL_TEST(SurfaceContact, ListsKeepTheCutoff)
+{
+  const auto ghosts = [](const std::string &given) {
+    Scene run(bare_head + given + grains + fixes + listed + bare_contact + "run 0\n");
+    return run.lmp->atom->nghost;
+  };
+  Scene run(bare_head + "comm_modify cutoff 4.5\n" + grains + fixes + listed);
+  EXPECT_EQ(run.lmp->comm->cutghostuser, 4.5);
+  EXPECT_GT(ghosts("comm_modify cutoff 4.5\n"), 1.5 * ghosts(""));
+}
+
 TEST(SurfaceContact, IsTheSameOnAnyNumberOfRanks)
 {
   for (const auto &start : {grains, every3})

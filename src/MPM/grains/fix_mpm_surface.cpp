@@ -355,8 +355,13 @@ void FixMPMSurface::set_lists(int iarg)
   const auto command = [this](const std::string &text) {
     input->one(text);
   };
+  // LAMMPS forgets a cutoff of the user when the mode changes. That of fix mpm, which is next to
+  // nothing, is no such cutoff
+  const double cutoff = comm->mode == Comm::SINGLE ? comm->cutghostuser : 0.0;
   command(fmt::format("neighbor {:.17g} multi", neighbor->skin));
   command("comm_modify vel yes mode multi");
+  if (cutoff > 1.0e-4 * neighbor->skin)
+    command(fmt::format("comm_modify cutoff/multi * {:.17g}", cutoff));
   const std::vector<int> types = types_of_points(iarg);
   for (const int a : types)
     for (const int b : types)
