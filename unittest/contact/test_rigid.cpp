@@ -90,6 +90,47 @@ TEST_P(Rigid, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
 INSTANTIATE_TEST_SUITE_P(Contact, Rigid,
                          Values("stick", "slip", "separate", "separate friction 0.3"));
 
+// A body touches points only. What it goes through is told once: a face of the box, a region, another
+// body; also where it is a corner that turns. The remedy of the message, a force, is a floor.
+SERIAL_TEST(RigidBody, TellsWhatItGoesThrough)
+{
+  const ScratchFile file("box.stl", text_of(box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})));
+  const std::string told = "the body goes through ", fall = "2.0 separate gravity 0 0 -1",
+                    place = "1.5 1.5 2.0";
+  const auto with = [&](const std::string &tool, const std::string &where) {
+    return replaced(scene(file.name, tool, where), "block 3 7 3 7 2 5", "block 6 7 6 7 4 5");
+  };
+  const auto through = [&](const std::string &more, const std::string &tool,
+                           const std::string &where) {
+    return lines_that_say(with(tool, where) + more + "run 250\nrun 10\n", told);
+  };
+  const auto floor = through("", fall, place);
+  ASSERT_EQ(floor.size(), 1u);
+  EXPECT_THAT(floor[0], HasSubstr("face zlo of the box"));
+  EXPECT_TRUE(through("", "2.0 separate", place).empty());
+  EXPECT_TRUE(through("", "2.0 separate omega 1 0 0", "1.5 1.5 0.75").empty());
+  EXPECT_TRUE(through("", "2.0 separate omega 0 0 1", "1.5 1.5 0.55").empty());
+  EXPECT_EQ(through("", "2.0 separate omega 1 0 0", "1.5 1.5 0.55").size(), 1u);
+  EXPECT_TRUE(through("", "2.0 separate velocity 1 0 0", place).empty());    // a periodic face
+  const auto slab = through("region slab block INF INF INF INF 0 1\n"
+                            "fix slab all mpm/boundary region slab stick\n",
+                            fall, place);
+  ASSERT_EQ(slab.size(), 1u);
+  EXPECT_THAT(slab[0], HasSubstr("the region of fix mpm/boundary slab"));
+  const auto other =
+      through("region more mpm/mesh " + file.name +
+                  " 1.0 1.5 1.5 0.6\nfix more all mpm/rigid more density 2.0 separate\n",
+              fall, place);
+  ASSERT_FALSE(other.empty());    // each of the two may tell it
+  EXPECT_THAT(other[0], HasSubstr("the body of fix mpm/rigid more"));
+
+  // a floor at z = 0 for the cube: rest at the depth m g/k
+  const std::string spring = "variable s equal 200*(0.5-f_tool[3])-20*f_tool[6]\n"
+                             "variable up equal v_s*(f_tool[3]<0.5)\n";
+  Scene run(with(fall + " force 0 0 v_up", place) + spring + "run 2000\n");
+  EXPECT_NEAR(run.fix_vector("tool", 6)[2], 0.5 - 2.0 / 200.0, 1e-6);
+}
+
 // Without contact an unequal box turns about no fixed axis: its energy stays, to second order.
 SERIAL_TEST(RigidBody, TurnsFreely)
 {

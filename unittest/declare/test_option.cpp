@@ -123,12 +123,16 @@ TEST(Option, AllKindsAreRead)
 
 TEST(Option, MistakesAreExplained)
 {
-  EXPECT_EQ(answer(""), "missing: fix paint");
+  EXPECT_EQ(answer(""), "-1: Illegal fix paint command: missing argument(s), needs size");
+  EXPECT_EQ(answer("color red"),
+            "0: Fix paint size is missing: expected floating point parameter instead of 'color'");
   EXPECT_EQ(answer("2.1"), "0: Fix paint size must be above 0 and at most 2: 2.1");
   EXPECT_EQ(answer("1 colour red"), "1: Unknown fix paint keyword: colour");
   EXPECT_EQ(answer("1 speed 1 2 3"),
             "4: Unknown fix paint keyword: 3; the values of speed are u v");
-  EXPECT_EQ(answer("1 color"), "missing: fix paint color");
+  EXPECT_EQ(
+      answer("1 color"),
+      "-1: Illegal fix paint color command: missing argument(s), needs one of red green blue");
   EXPECT_EQ(answer("1 color pink"),
             "2: Unknown fix paint color pink: must be one of red green blue");
   EXPECT_EQ(answer("1 color blue 2"), "3: Fix paint color blue gloss must be within 0 and 1: 2");
@@ -136,7 +140,8 @@ TEST(Option, MistakesAreExplained)
   EXPECT_EQ(answer("1 coats 3000000000"), "2: Fix paint coats is too large: 3000000000");
   EXPECT_EQ(answer("1 shares 1 0 1"), "3: Fix paint shares must be positive: 0");
   EXPECT_EQ(answer("1 shares 1 1 1e999"), "4: Fix paint shares must be positive: 1e999");
-  EXPECT_EQ(answer("1 shares 1 1"), "missing: fix paint shares");
+  EXPECT_EQ(answer("1 shares 1 1"),
+            "-1: Illegal fix paint shares command: missing argument(s), needs a b c (in 2d: a b)");
   EXPECT_EQ(answer("1 cells 1 2 3"),
             "1: Fix paint cells expects 1 or 2 numbers in a 2d simulation, not 3");
   EXPECT_EQ(answer("1 cells 10"), "2: Fix paint cells must be within 1 and 9: 10");

@@ -596,6 +596,8 @@ TEST(Handshake, RefusesWhatItCannotDo)
        {"fix more atoms mpm/handshake grid zone x 4 8 taper 1", "keyword: taper"},
        {"unfix move", "are not moved by one fix nve"},
        {"fix again atoms nve", "are not moved by one fix nve"},
+       {"region r sphere 0 0 0 1\nfix out all mpm/absorb region r",
+        "cannot remove points of fix bridge (style mpm/handshake)"},
        {"pair_style lj/cut 2.5\npair_coeff * * 1.0 1.0\nneigh_modify exclude none",
         "use neigh_modify exclude"}},
       "run 1\n");
@@ -607,6 +609,12 @@ TEST(Handshake, RefusesWhatItCannotDo)
   refused("transfer flip 1.0", "transfer flip 1.0 scheme musl", "needs a field with scheme usl");
   refused("transfer flip 1.0", "transfer flip 1.0 frame total", "frame total");
   refused("transfer flip 1.0", "transfer flip 1.0 every 2", "fix mpm every");
+  refused("transfer flip 1.0", "transfer flip 1.0 shape linear light 0.5", "without light nodes");
+  expect_error(
+      scene + move +
+          "region in block 22 23 2 3 INF INF\nfix in points mpm/emit 2 region in velocity 1 0 0\n"
+          "run 1\n",
+      "mpm/emit in cannot be used with fix bridge (style mpm/handshake)");
   const std::string pair = "pair_style lj/cut 2.5\npair_coeff * * 1.0 1.0";
   refused(pair, "pair_style atm 2.5 2.5\npair_coeff * * * 1.0", "with pair style atm");
   refused(pair,

@@ -722,6 +722,43 @@ variable atoms atom x
       "run 3\n");
 }
 
+// what others need all points of is not absorbed, whatever groups the fixes have: a field with
+// *every*, the nodes of elements, and both parts of a mixture
+SERIAL_TEST(BadInput, AbsorbsPointsThatOthersNeed)
+{
+  const ScratchFile line(
+      "line.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0.3 0.7 0\n2 0.4 0.7 0\n"
+      "3 0.5 0.7 0\n$EndNodes\n$Elements\n2\n1 1 2 0 1 1 2\n2 1 2 0 1 2 3\n"
+      "$EndElements\n");
+  const std::string start = plane("si", "f f", "0 1 0 1", 2, 0.01) +
+      "region b block 0.2 0.5 0.2 0.5 INF INF\ngroup one empty\ngroup two empty\n"
+      "region r block 0.8 1 INF INF INF INF\n",
+                    end = "timestep 1e-5\nrun 1\n";
+  const std::string elements = "fix F all mpm 0.05\nfix m all mpm/material density 1000 linear 1e6 "
+                               "0.3\ncreate_points 1 mesh " +
+      line.name + " thickness 0.01 group one\ncreate_points 2 region b ppc 2 group two\n" +
+      "fix e one mpm/elements " + line.name + " thickness 0.01\n";
+  const std::string mixture = "fix F one mpm 0.05\nfix G two mpm 0.05\n"
+                              "create_points 1 region b ppc 2 fix F group one\n"
+                              "create_points 2 region b ppc 2 fix G group two share 0.4\n"
+                              "fix m one mpm/material density 1600 linear 1e6 0.3\n"
+                              "fix n two mpm/material density 1000 eos tait 1e6 7\n"
+                              "fix mix all mpm/mixture F G 2650 1e-3 drag darcy 1e-6\n",
+                    slow = "fix F one mpm 0.05 every 2\nfix G two mpm 0.05 every 2\n"
+                           "create_points 1 region b ppc 2 fix F group one\n"
+                           "fix m all mpm/material density 1600 linear 1e6 0.3\n";
+  for (const char *group : {"all", "one"}) {
+    const auto absorb = strprintf("fix out %s mpm/absorb region r\n", group);
+    expect_error(start + elements + absorb + end,
+                 "cannot remove points of fix e (style mpm/elements)");
+    expect_error(start + mixture + absorb + end,
+                 "cannot remove points of fix mix (style mpm/mixture)");
+    expect_error(start + slow + absorb + end, "cannot be used with every of fix mpm F");
+  }
+  Scene others(start + elements + "fix out two mpm/absorb region r\n" + end);
+}
+
 // Around an axis of symmetry the area that is given is that of an annulus, as what is found
 SERIAL_TEST(Emit, AreaOfAnAnnulus)
 {

@@ -77,7 +77,7 @@ static const auto keywords = mistakes_in(
         {"TransferUnknown", "1.0 transfer xflip",
          "Unknown fix mpm transfer xflip: must be one of pic flip apic"},
         {"FlipShareMissing", "1.0 transfer flip",
-         "Illegal fix mpm transfer command: missing argument"},
+         "Illegal fix mpm transfer flip command: missing argument.*needs share"},
         {"FlipShareText", "1.0 transfer flip shape linear", "[Ee]xpected floating.point.*shape"},
         {"FlipShareTooLarge", "1.0 transfer flip 1.5", "flip share must be within 0 and 1: 1\\.5"},
         {"FlipShareNegative", "1.0 transfer flip -0.1",
@@ -249,6 +249,8 @@ static const Change doubts[] = {
     {"SmallTimeStep", TIMESTEP, "timestep 1e-8\n",
      "time step 1e-08 is far below the limit 0\\.26[0-9]* of .* would take 1[0-9]{7} times fewer"},
     {"TimeStepOfFix", TIMESTEP, "fix dt all mpm/dt 0.5\n", ""},
+    {"SmallTimeStepOfFix", TIMESTEP, "fix dt all mpm/dt 0.5 max 1e-8\n", ""},
+    {"SmallTimeStepOfLAMMPS", TIMESTEP, "fix dt all dt/reset 1 1e-9 1e-8 1.0\n", ""},
     {"NoSkin", SKIN, "",
      "skin 0\\.001 is small for the node spacing 1, .*: use neighbor 0\\.5 bin"},
     {"NoSkinButRareLists", SKIN, "neigh_modify every 10\n", ""},
@@ -683,7 +685,19 @@ TEST(Overlap, IsReported)
                  "instance points [1-9][0-9]* and [1-9][0-9]* near [0-9. ]+: .*does not part them"))
         << lines << found[0];
   }
-  // create_points does not let it happen
+  // create_points does not let it happen; sites on the face between two bodies belong to the first
+  for (const char *spacing : {"spacing 0.5", "spacing 0.8"}) {
+    const auto touch = space("lj", "f f f", "0 8 0 8 0 8", 2) +
+        "region one block 0 4.4 0 4 0 4\nregion two block 4.4 8 0 4 0 4\n" +
+        strprintf("create_points 1 region one %s\ncreate_points 2 region two %s\n", spacing,
+                  spacing);
+    const double whole = 8.0 * 4.0 * 4.0;
+    Scene run(touch);
+    double volume = 0.0;
+    for (int i = 0; i < run.n(); i++) volume += run.lmp->atom->vfrac[i];
+    EXPECT_NEAR(over_ranks(volume), whole, 1e-12 * whole) << spacing;
+    expect_error(replaced(touch, "two block 4.4", "two block 3.6"), "overlap yes");
+  }
   expect_error(changed(good_scene, "b2 block 2 6 2 6 3 5", "b2 block 2 6 2 6 2 4"), "overlap yes");
 }
 }    // namespace Coupling

@@ -1644,7 +1644,7 @@ TEST(TimeStep, TellsTheEndOfARun)
             "fix step all mpm/dt 0.5 until 1.0\nthermo_style custom step time pe press\n"
             "thermo 1000\n");
   const auto text = log_of(run, "run 3\nrun 0\nrun 2\nrun 1000\nrun 5\n");
-  const auto told = text.find("before until 1: run more steps");
+  const auto told = text.find("before until 1, which takes about");
   EXPECT_NE(told, std::string::npos) << text;
   EXPECT_EQ(text.find("before until", told + 1), std::string::npos) << "run 0 is no run to an end";
   EXPECT_EQ(text.find("has passed"), std::string::npos) << text;

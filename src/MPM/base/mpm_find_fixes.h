@@ -12,7 +12,9 @@
 #include "fix.h"
 #include "lammps.h"
 #include "modify.h"
+#include "utils.h"
 
+#include <initializer_list>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -23,6 +25,20 @@ template <class T> std::vector<T *> find_fixes(LAMMPS *lmp)
   std::vector<T *> list;
   for (auto *ifix : lmp->modify->get_fix_list())
     if (auto *found = dynamic_cast<T *>(ifix)) list.push_back(found);
+  return list;
+}
+
+/** All fixes whose style matches one of these patterns, in the order of their definition. Patterns
+ *  of LAMMPS have neither alternatives nor groups: "^mpm/(a|b)$" is valid, and matches nothing. */
+inline std::vector<Fix *> find_fixes(LAMMPS *lmp, std::initializer_list<const char *> patterns)
+{
+  std::vector<Fix *> list;
+  for (auto *ifix : lmp->modify->get_fix_list())
+    for (const char *const pattern : patterns)
+      if (utils::strmatch(ifix->style, pattern)) {
+        list.push_back(ifix);
+        break;
+      }
   return list;
 }
 

@@ -60,9 +60,17 @@ int LAMMPS_NS::read_precision(LAMMPS *lmp, int narg, char **arg, bool &single)
 
 void LAMMPS_NS::require_field(LAMMPS *lmp, const Fix &user)
 {
-  if (lmp->modify->get_fix_by_style("^mpm$").empty())
+  if (!lmp->modify->get_fix_by_style("^mpm$").empty()) return;
+  const auto others = find_fixes(lmp, {"^mpm/incompressible$", "^mpm/mesh$"});
+  if (others.empty())
     lmp->error->all(FLERR, Error::NOLASTLINE, "Fix {} needs a fix mpm for the points: define one",
                     user.style);
+  lmp->error->all(
+      FLERR, Error::NOLASTLINE,
+      "Fix {} acts on points of a fix mpm, and those of fix {} (style {}) have neither "
+      "its nodes nor its materials: give the points a fix mpm, a fluid with eos tait, or "
+      "remove fix {}",
+      user.style, others[0]->id, others[0]->style, user.id);
 }
 
 void LAMMPS_NS::refuse_second(LAMMPS *lmp, const Fix &user, const std::string &remedy)

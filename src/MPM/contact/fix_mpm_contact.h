@@ -21,6 +21,7 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "contact/mpm_contact_trial.h"
 #include "contact/mpm_node_contact.h"
 #include "declare/option.h"
+#include "field/mpm_coupling.h"
 #include "field/mpm_friction_heat.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
@@ -42,6 +43,7 @@ class FixMPMContact :
     public Fix,
     public MPMNodeAction,
     public MPMRubbing,
+    public MPMCoupling,
     private MPMContactOptions {
  public:
   Turn turn() const override { return BETWEEN_BODIES; }
@@ -66,7 +68,7 @@ class FixMPMContact :
   MPMTrialContact *trial_contact() override { return in_implicit_steps ? &trial : nullptr; }
 
   /** Does this fix treat contact between these two fields (IDs)? */
-  bool couples(const std::string &a, const std::string &b) const;
+  bool couples(const std::string &a, const std::string &b) const override;
   /** Is this field (ID) one of the bodies? */
   bool touches(const std::string &name) const override;
   /** Does this fix have the same contact law and parameters as another one? */

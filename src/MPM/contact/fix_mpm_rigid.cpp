@@ -8,6 +8,7 @@
 
 #include "contact/fix_mpm_rigid.h"
 
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_image.h"
 #include "base/mpm_options.h"
 #include "comm.h"
@@ -16,11 +17,13 @@
 #include "field/mpm_field.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
+#include "field/mpm_setup_checks.h"
 #include "force.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
 #include "modify.h"
 #include "update.h"
+#include "walls/fix_mpm_boundary.h"
 #include "walls/mpm_region_cut.h"
 #include "walls/region_mpm_mesh.h"
 
@@ -185,6 +188,7 @@ void FixMPMRigid::init()
   if (contact.mesh) {
     region->need_distance();
     contact.mesh = &region->surface_mesh();
+    find_corners();
   } else if (!flows) {
     if (domain->dimension == 2)
       error->all(
@@ -297,9 +301,81 @@ void FixMPMRigid::check_motion(double dt) const
     if (field->options.dt_check && speed() * dt > field->lattice.h)
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/rigid {}: the body crosses {:.3g} cells of fix mpm {} in step {} and can "
-                 "pass through material without touching it: use a smaller timestep, fix mpm/dt, "
-                 "or fix mpm ... dtcheck no",
-                 id, speed() * dt / field->lattice.h, field->id(), update->ntimestep);
+                 "pass through material without touching it: {}, or fix mpm ... dtcheck no",
+                 id, speed() * dt / field->lattice.h, field->id(), update->ntimestep,
+                 remedy_of_step(lmp));
+}
+
+/** Each corner once, and the middles of triangles: where edges of two bodies lie in each other's
+ *  faces, corners are in neither. */
+void FixMPMRigid::find_corners()
+{
+  corners.clear();
+  for (const auto &triangle : contact.mesh->soup()) {
+    std::array<double, 3> middle;
+    for (int d = 0; d < 3; d++)
+      middle[d] = (triangle[0][d] + triangle[1][d] + triangle[2][d]) / 3.0;
+    corners.push_back(middle);
+    for (const auto &corner : triangle) corners.push_back(corner);
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  for (auto &corner : corners)
+    for (int d = 0; d < 3; d++) corner[d] -= first[d];
+}
+
+bool FixMPMRigid::has_corner(const std::function<bool(const double *)> &is_inside) const
+{
+  return std::any_of(corners.begin(), corners.end(), [&](const std::array<double, 3> &corner) {
+    double place[3];
+    turn_to_space(corner.data(), place);
+    MathExtra::add3(place, x, place);
+    return is_inside(place);
+  });
+}
+
+/** The body touches material, and nothing else: tells once when it goes through a face of the box,
+ *  a wall, or another body. Corners of the surface are looked at when the ball around the body has
+ *  come near. All ranks have the same motion. */
+void FixMPMRigid::warn_of_walls()
+{
+  if (warned_of_walls) return;
+  std::string what;
+  const double reach = contact.farthest, least = 1.0e-6 * reach;
+  for (int face = 0; face < 6 && what.empty(); face++) {
+    const int d = face / 2;
+    const bool high = face % 2;
+    const double at = high ? domain->boxhi[d] : domain->boxlo[d], sign = high ? 1.0 : -1.0;
+    if (!domain->periodicity[d] && sign * (x[d] - at) > -reach && has_corner([&](const double *p) {
+          return sign * (p[d] - at) > least;
+        }))
+      what = fmt::format("face {}{} of the box", (char) ('x' + d), high ? "hi" : "lo");
+  }
+  for (const auto *wall : find_fixes<FixMPMBoundary>(lmp))
+    if (what.empty() && wall->is_region() && wall->distance(x, reach) < reach &&
+        has_corner([&](const double *p) {
+          return wall->distance(p, reach) < -least;
+        }))
+      what = fmt::format("the region of fix mpm/boundary {}", wall->id);
+  for (const auto *other : find_fixes<FixMPMRigid>(lmp)) {
+    const double both = reach + other->contact.farthest;
+    double apart[3];
+    MathExtra::sub3(x, other->x, apart);
+    if (what.empty() && other != this && MathExtra::len3(apart) < both &&
+        has_corner([&](const double *p) {
+          return other->distance(p, both) < -least;
+        }))
+      what = fmt::format("the body of fix mpm/rigid {}", other->id);
+  }
+  if (what.empty()) return;
+  warned_of_walls = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/rigid {}: the body goes through {} at step {}, as it touches material "
+                   "points only: push it back by the keyword force with a variable of f_{}[1] to "
+                   "f_{}[6], hold it, or use stiff points in a fix mpm of their own, with fix "
+                   "mpm/contact",
+                   id, what, update->ntimestep, id, id);
 }
 
 void FixMPMRigid::act(double dt, Stage stage)
@@ -325,6 +401,7 @@ void FixMPMRigid::act(double dt, Stage stage)
     if (ledger.on) ledger.transfer += faster * force->mvv2e;
   }
   check_motion(dt);
+  warn_of_walls();
 }
 
 void FixMPMRigid::motion(double *center, double *velocity, double *angular) const

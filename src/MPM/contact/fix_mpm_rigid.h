@@ -21,7 +21,10 @@ FixStyle(mpm/rigid,FixMPMRigid);
 #include "fix.h"
 #include "math_extra.h"
 
+#include <array>
+#include <functional>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -80,12 +83,17 @@ class FixMPMRigid :
  private:
   double first[3];    // center of the body in the region
   MPMRigidContact contact;
+  std::vector<std::array<double, 3>> corners;    // of the surface, from the center of the body
+  bool warned_of_walls = false;
 
   void find_shape();
   void load_impulse(double dt);
   double speed() const;
   double spacing_of_flow() const;
   void check_motion(double dt) const;
+  void find_corners();
+  bool has_corner(const std::function<bool(const double *)> &is_inside) const;
+  void warn_of_walls();
 };
 
 }    // namespace LAMMPS_NS

@@ -19,8 +19,10 @@ CommandStyle(create_points,CreatePoints);
 #include "create/create_points_mesh.h"
 #include "declare/option.h"
 
+#include <array>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -94,6 +96,8 @@ class CreatePoints : public Command, private CreatePointsOptions {
   std::unique_ptr<class MPMRegionCut> region_cut;    // with keyword cut, else null
   int split_variable = -1;                           // index, -1: none
   int place_variable[3] = {-1, -1, -1};
+  /** Sites on the surface of the region where another body has points: they belong to that one. */
+  std::set<std::array<bigint, 3>> taken;
   mutable bigint beyond_box = 0;    // points of divided sites that would be outside of the box
 
   // of an image
@@ -127,6 +131,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void check_outside();
   bool same_body(int i) const;
   void check_overlap();
+  bool is_inside(const double *x) const;
   bigint ranges_in_box(Range *) const;
   bigint make_points();
   bigint make_mesh_points();

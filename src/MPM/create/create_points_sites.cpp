@@ -12,6 +12,7 @@
 #include "create/create_points.h"
 
 #include "atom.h"
+#include "base/mpm_lists.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -25,6 +26,7 @@
 #include "walls/mpm_region_cut.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -177,6 +179,7 @@ void CreatePoints::find_ranges()
 /** Share of the volume of a site that its point gets; 0: no point. */
 double CreatePoints::volume_fraction(const bigint *s) const
 {
+  if (!taken.empty() && taken.count({s[0], s[1], s[2]})) return 0.0;
   if (region_cut) return region_cut->inside(s).share;
   if (split_variable >= 0) {
     int inside = 0;
@@ -297,10 +300,24 @@ bool CreatePoints::same_body(int i) const
   return !in_field && atom->type[i] == type;
 }
 
+/** Is x in the region, and not on its surface? Regions that touch have their common surface both. */
+bool CreatePoints::is_inside(const double *x) const
+{
+  if (!region) return true;
+  for (int d = 0; d < domain->dimension; d++)
+    for (const double side : {-1.0, 1.0}) {
+      double place[3] = {x[0], x[1], x[2]};
+      place[d] += side * TOLERANCE * spacing[d];
+      if (!region->match(place[0], place[1], place[2])) return false;
+    }
+  return true;
+}
+
 void CreatePoints::check_overlap()
 {
   const int dim = domain->dimension;
   double **x = atom->x;
+  std::vector<std::array<bigint, 3>> of_others;
   bigint mine[2] = {0, -MAXTAGINT}, all[2], apart = 0, all_apart;
 
   for (int i = 0; i < atom->nlocal; i++) {
@@ -319,10 +336,26 @@ void CreatePoints::check_overlap()
     if (!in_box(s) || !in_region(s)) continue;
     if ((cut || split_variable >= 0) && region && !region->match(x[i][0], x[i][1], x[i][2]))
       continue;
+    if (!is_inside(x[i])) {    // bodies that touch do not overlap
+      double apart = 0.0;
+      for (int d = 0; d < dim; d++) {
+        double r = x[i][d] - position(d, s[d]);
+        if (domain->periodicity[d]) r -= domain->prd[d] * std::round(r / domain->prd[d]);
+        apart = std::max(apart, fabs(r) / spacing[d]);
+      }
+      if (apart < 10.0 * TOLERANCE) of_others.push_back({s[0], s[1], s[2]});
+      continue;
+    }
     mine[0]++;
     apart += !same;
     mine[1] = std::max(mine[1], -(bigint) atom->tag[i]);
   }
+  for (const auto &site : gather_on_all(of_others, world)) taken.insert(site);
+  if (!taken.empty() && comm->me == 0)
+    utils::logmesg(lmp,
+                   "Create_points leaves out {} points on the surface of region {}, where other "
+                   "bodies have points\n",
+                   taken.size(), region->id);
   MPI_Allreduce(&mine[0], &all[0], 1, MPI_LMP_BIGINT, MPI_SUM, world);
   MPI_Allreduce(&mine[1], &all[1], 1, MPI_LMP_BIGINT, MPI_MAX, world);
   if (all[0] == 0) return;

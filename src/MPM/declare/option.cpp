@@ -76,9 +76,24 @@ std::string required(const Range &r)
   return "must be " + join(parts, " and ");
 }
 
-void take(OptionReader &r, const std::string &name, const Range &range, double &to)
+/** A word in the place of a number is mostly the next keyword, and the number is missing. */
+int next_number(OptionReader &r, const std::string &name, const std::string &kind)
 {
   const int iarg = r.next();
+  const std::string word = r.input.arg[iarg];
+  const auto is_part = [](unsigned char c) {
+    return isalpha(c) || c == '/';
+  };
+  if (word.size() > 3 && !name.empty() && std::all_of(word.begin(), word.end(), is_part))
+    throw OptionError{iarg,
+                      sentence(r.what + " " + name) + " is missing: expected " + kind +
+                          " parameter instead of '" + word + "'"};
+  return iarg;
+}
+
+void take(OptionReader &r, const std::string &name, const Range &range, double &to)
+{
+  const int iarg = next_number(r, name, "floating point");
   to = r.input.number(iarg);
   if (!std::isfinite(to) || !range.contains(to))
     r.fail(iarg, name, required(range) + ": " + r.input.arg[iarg]);
@@ -87,7 +102,7 @@ void take(OptionReader &r, const std::string &name, const Range &range, double &
 template <class Integer>
 void take(OptionReader &r, const std::string &name, const Range &range, Integer &to)
 {
-  const int iarg = r.next();
+  const int iarg = next_number(r, name, "integer");
   const int64_t value = r.input.integer(iarg);
   to = static_cast<Integer>(value);
   if (to != value || !range.contains(static_cast<double>(value)))
@@ -138,10 +153,31 @@ std::string text_of(const std::vector<OptionValue> &values)
   return join(parts, " ");
 }
 
+/** Names of values, or the words that can be in the place of one. */
+std::string usage_of(const OptionValue &value)
+{
+  if (!value.words) return value.usage;
+  Strings words;
+  for (const auto &word : *value.words) words.push_back(word.word);
+  return "one of " + join(words, " ");
+}
+
+/** Reads values that are not optional. Where the command ends too soon, the message says what it
+ *  needs. */
 void read_values(const std::vector<OptionValue> &values, OptionReader &r)
 {
-  for (const auto &value : values)
-    if (!value.optional || is_number(r, r.iarg)) value.read(r);
+  const std::string what = r.what;
+  try {
+    for (const auto &value : values)
+      if (!value.optional || is_number(r, r.iarg)) value.read(r);
+  } catch (const OptionError &e) {
+    if (!e.missing) throw;
+    Strings needs;
+    for (const auto &value : values)
+      if (!value.optional) needs.push_back(usage_of(value));
+    throw OptionError{
+        -1, "Illegal " + what + " command: missing argument(s), needs " + join(needs, " ")};
+  }
 }
 
 }    // namespace
@@ -333,7 +369,7 @@ int Options::read(const OptionInput &input, int iarg, const std::string &last)
 {
   OptionReader first{input, iarg, command, command, true};
   for (const auto &value : arguments) {
-    value.read(first);
+    read_values({value}, first);
     first.what = command;
   }
   iarg = first.iarg;

@@ -19,6 +19,7 @@
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_setup_checks.h"
 #include "force.h"
 #include "material/material.h"
 #include "math_extra.h"
@@ -41,7 +42,7 @@ static constexpr double MANY_ROUGH = 0.1;
 
 /** fix ID group mpm/elements FILE keyword value ... */
 FixMPMElements::FixMPMElements(LAMMPS *lmp, int narg, char **arg) :
-    FixMPMState(lmp, narg, arg), dim(domain->dimension), nodes(lmp, *this),
+    FixMPMState(lmp, narg, arg), dim(domain->dimension), nodes(lmp, *this), uncoupled(lmp),
     points(MPMPoints::get(atom))
 {
   Options options = declare(dim);
@@ -161,6 +162,9 @@ void FixMPMElements::init()
 {
   nodes.check();
   has_lattice = field_of_nodes() != nullptr;
+  uncoupled.begin_run(*this);
+  // without cutoffs there are no bins to sort by: LAMMPS would say so in each run
+  if (!force->pair && atom->userbinsize == 0.0) atom->sortfreq = 0;
   warned_slack = false;
   surface->pressure = nullptr;
   comm_reverse = width = 18 + body->nhistory;
@@ -357,13 +361,12 @@ void FixMPMElements::check_dt() const
     error->one(
         FLERR,
         "Time step {:.6g} is above the limit {:.6g} of fix mpm/elements {} at step {}, mostly by "
-        "the stiffness of the gas in it (fix mpm/airbag): use timestep, or fix mpm/dt",
-        update->dt, limit, id, update->ntimestep);
+        "the stiffness of the gas in it (fix mpm/airbag): {}",
+        update->dt, limit, id, update->ntimestep, remedy_of_step(lmp));
   error->one(FLERR,
              "Time step {:.6g} is above the limit {:.6g} of fix mpm/elements {} at step {}: "
-             "element with node {}, wave speed {:.6g}; use timestep, fix mpm/dt, or a mesh without "
-             "small elements",
-             update->dt, limit, id, update->ntimestep, tag, speed);
+             "element with node {}, wave speed {:.6g}; {}, or a mesh without small elements",
+             update->dt, limit, id, update->ntimestep, tag, speed, remedy_of_step(lmp));
 }
 
 /** Where a slack element becomes taut its stiffness jumps, and Verlet steps that are not small then

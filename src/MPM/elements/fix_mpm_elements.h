@@ -20,6 +20,7 @@ FixStyle(mpm/elements,FixMPMElements);
 #include "elements/element_nodes.h"
 #include "elements/element_surface.h"
 #include "elements/mpm_elements_options.h"
+#include "field/mpm_coupling.h"
 #include "field/mpm_interfaces.h"
 #include "mesh/element_body.h"
 
@@ -53,7 +54,11 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
     find_nodes();
     if (!has_lattice) check_free_dt();    // with a lattice, fix mpm checks the time step
   }
-  void post_force(int) override { compute(false); }
+  void post_force(int) override
+  {
+    uncoupled.look();
+    compute(false);
+  }
   double compute_scalar() override { return (double) nelements; }
   double compute_vector(int) override;
   double memory_usage() override;
@@ -147,6 +152,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   bigint nelements;       // of the mesh
   ElementNodes nodes;
   bool has_lattice = true;      // does a fix mpm move the nodes?
+  MPMUncoupled uncoupled;       // other matter, if none does
   bool warned_slack = false;    // in this run
   double spent = 0.0;    // plastic and other dissipated work without a lattice, this rank's share
   class FixMPMMaterial *material;    // found again at the start of each run

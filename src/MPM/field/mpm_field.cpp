@@ -26,6 +26,7 @@
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_setup_checks.h"
 #include "field/mpm_smoothing.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
@@ -145,8 +146,10 @@ void MPMField::init(MPMPlan *plan_of_all)
 
   find_materials();
   elements = find_fixes<MPMInternalForce>(lmp);
-  if (materials.empty())
+  if (materials.empty()) {
+    refuse_other_integrators(lmp, fix);    // a second fix by mistake needs no material
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
+  }
 
   if (heating) heating->init();
 

@@ -13,6 +13,7 @@
 #include "base/mpm_pair_styles.h"
 #include "base/mpm_points.h"
 #include "comm.h"
+#include "compute.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_cpdi.h"
@@ -28,7 +29,9 @@
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
+#include "output.h"
 #include "pair.h"
+#include "thermo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +54,11 @@ void MPMSetupChecks::run(When when, bool first)
                                    {POINTS, false, &Checks::points},
                                    {POINTS, false, &Checks::rings},
                                    {POINTS, true, &Checks::forgotten_points},
+                                   {POINTS, true, &Checks::coupling},
                                    {POINTS, true, &Checks::fixes},
+                                   {POINTS, true, &Checks::regions},
+                                   {POINTS, true, &Checks::computes},
+                                   {POINTS, true, &Checks::columns},
                                    {POINTS, true, &Checks::skin},
                                    {POINTS, true, &Checks::lists_after_restart},
                                    {PAIRS, false, &Checks::radii},
@@ -73,6 +80,11 @@ void MPMSetupChecks::integrators()
 void MPMSetupChecks::forgotten_points()
 {
   field.guard->expect_points(warn_of_forgotten_points(lmp, "mpm", "have no stress"));
+}
+
+void MPMSetupChecks::coupling()
+{
+  uncoupled.begin_run(field.fix);
 }
 
 /** Poisson ratio of new points, by the tangent at rest; 0 for fluids, and if the law has no tangent
@@ -383,6 +395,55 @@ void MPMSetupChecks::fixes()
     }
 }
 
+/** Computes that are made for atoms. Those of LAMMPS's own log are left to columns(). */
+void MPMSetupChecks::computes()
+{
+  static const char *const stress =
+      "sees their velocities and the forces of pairs, not their stress: use the pressure or the "
+      "stress of compute mpm/atom, and compute reduce ... ave for a mean";
+  static const char *const heat =
+      "takes their motion for heat: use the temperature of compute mpm/atom, or give it a group "
+      "without them";
+  static const std::pair<const char *, const char *> doubts[] = {{"^pressure", stress},
+                                                                 {"^stress/atom", stress},
+                                                                 {"^centroid/stress/", stress},
+                                                                 {"^temp$", heat},
+                                                                 {"^temp/", heat}};
+  for (const auto *compute : modify->get_compute_list())
+    for (const auto &[style, what] : doubts) {
+      if (!utils::strmatch(compute->style, style) || utils::strmatch(compute->id, "^thermo_") ||
+          !told_of.insert(compute->id).second)
+        continue;
+      const bigint all = points_in_both(lmp, 1, compute->groupbit);
+      if (all && comm->me == 0)
+        error->warning(FLERR, "Compute {} (style {}) has {} material points in its group and {}",
+                       compute->id, compute->style, all, what);
+    }
+}
+
+/** The default style of the log has such columns, too; this is said without a warning. */
+void MPMSetupChecks::columns()
+{
+  static const char *const common[] = {"Step", "Temp", "E_pair", "E_mol", "TotEng", "Press"};
+  if (told_of_columns || comm->me || !output->thermo) return;
+  std::vector<std::string> words;
+  for (const auto &word : output->thermo->get_keywords())    // some may be empty
+    if (!word.empty() && word != "Volume") words.push_back(word);
+  std::string found;
+  for (const char *const word : {"Temp", "Press", "Pxx", "Pyy", "Pzz", "Pxy", "Pxz", "Pyz"})
+    if (std::count(words.begin(), words.end(), word)) found += std::string(" ") + word;
+  if (found.empty()) return;
+  told_of_columns = true;
+  const auto text = fmt::format("of the log ({}) see the velocities of material points and the "
+                                "forces of pairs, not the temperature or stress of points: for "
+                                "these, use compute mpm/atom, and compute reduce ... ave",
+                                found.substr(1));
+  if (std::equal(words.begin(), words.end(), std::begin(common), std::end(common)))
+    utils::logmesg(lmp, "Fix mpm: columns {}\n", text);
+  else
+    error->warning(FLERR, "Fix mpm: columns {}", text);
+}
+
 /** With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A
  *  skin counts as small for grains only if it is a small part of their size. */
 void MPMSetupChecks::skin()
@@ -513,18 +574,32 @@ void MPMSetupChecks::radii()
                all[2], field.id(), example_all);
 }
 
-void LAMMPS_NS::refuse_other_integrators(LAMMPS *lmp, const Fix &mine)
+bigint LAMMPS_NS::points_in_both(LAMMPS *lmp, int one, int other)
 {
   const Atom *atom = lmp->atom;
+  bigint n = 0, all;
+  for (int i = 0; i < atom->nlocal; i++)
+    n += atom->vfrac[i] > 0.0 && (atom->mask[i] & one) && (atom->mask[i] & other);
+  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+  return all;
+}
+
+std::string LAMMPS_NS::remedy_of_step(LAMMPS *lmp)
+{
+  const auto fixes = lmp->modify->get_fix_by_style("^mpm/dt$");
+  if (fixes.empty()) return "use timestep, fix mpm/dt";
+  return fmt::format(
+      "give fix mpm/dt {} the keyword every 1, strain 0.05, or a smaller fraction, as "
+      "the limit has become less since it last looked",
+      fixes[0]->id);
+}
+
+void LAMMPS_NS::refuse_other_integrators(LAMMPS *lmp, const Fix &mine)
+{
   for (const auto *other : lmp->modify->get_fix_list()) {
     if (other == &mine || !(other->time_integrate || utils::strmatch(other->style, "^mpm$")))
       continue;
-    bigint n = 0, all;
-    for (int i = 0; i < atom->nlocal; i++)
-      if (atom->vfrac[i] > 0.0 && (atom->mask[i] & mine.groupbit) &&
-          (atom->mask[i] & other->groupbit))
-        n++;
-    MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
+    const bigint all = points_in_both(lmp, mine.groupbit, other->groupbit);
     if (all)
       lmp->error->all(FLERR, Error::NOLASTLINE,
                       "{} material points of fix {} (style {}) are also integrated by fix {} "

@@ -9,10 +9,13 @@
 #ifndef LMP_MPM_SETUP_CHECKS_H
 #define LMP_MPM_SETUP_CHECKS_H
 
+#include "field/mpm_coupling.h"
+#include "field/mpm_doubts.h"
 #include "lmptype.h"
 #include "pointers.h"
 
 #include <optional>
+#include <set>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -22,7 +25,10 @@ class MPMField;
  *  and stops with an error or warns. */
 class MPMSetupChecks : protected Pointers {
  public:
-  MPMSetupChecks(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
+  MPMSetupChecks(class LAMMPS *lmp, MPMField &field) :
+      Pointers(lmp), uncoupled(lmp), field(field), doubts(lmp)
+  {
+  }
 
   /** Groups of checks, in the order in which they are possible. */
   enum When {
@@ -45,13 +51,17 @@ class MPMSetupChecks : protected Pointers {
   /** Settings of the restart file that the next run continues from. */
   std::optional<Lists> lists_of_file;
 
+  MPMUncoupled uncoupled;    ///< of all fields
+
   /** Stops with an error if points that meet grains have no radius or one that is too large, or are
    *  rings around an axis of symmetry. */
   void radii();
 
  private:
   MPMField &field;
-  bool warned_of_locking = false;
+  MPMDoubts doubts;
+  bool warned_of_locking = false, told_of_columns = false;
+  std::set<std::string> told_of;    // IDs of computes
 
   /** Is another fix an integrator of points of the field, too? */
   void integrators();
@@ -61,8 +71,15 @@ class MPMSetupChecks : protected Pointers {
   void rings();
   /** Are there points that no field moves? */
   void forgotten_points();
+  /** Is there other matter that goes through the points? */
+  void coupling();
   /** Do other fixes silently have no effect on points, or do harm? */
   void fixes();
+  /** Do regions reach across periodic faces? */
+  void regions() { doubts.check_regions(); }
+  /** Do computes and columns of the log see a part of points only? */
+  void computes();
+  void columns();
   void skin();
   /** Are neighbor lists made as in the run that wrote the restart file? */
   void lists_after_restart();
@@ -75,6 +92,15 @@ class MPMSetupChecks : protected Pointers {
   /** Do neighbor lists consist mostly of skin? */
   void lists_of_pairs();
 };
+
+/** Number of material points that are in both groups, of which these are the bits. Bits of groups
+ *  say nothing about this by themselves: all points are in group all, whose bit no other group has.
+ *  Collective. */
+bigint points_in_both(class LAMMPS *, int one, int other);
+
+/** What to do about a time step that is above a limit: a fix mpm/dt which is there has found the limit
+ *  some steps before. */
+std::string remedy_of_step(class LAMMPS *);
 
 /** Stops with an error if another fix, too, moves material points in the group of a fix that moves
  *  them. Called at the start of a run by all ranks. */

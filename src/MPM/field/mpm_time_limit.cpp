@@ -9,6 +9,7 @@
 #include "field/mpm_time_limit.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "comm.h"
 #include "error.h"
@@ -21,10 +22,10 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_setup_checks.h"
 #include "field/mpm_stencil.h"
 #include "force.h"
 #include "material/batch_kernels.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -125,7 +126,7 @@ void MPMTimeLimit::check()
   if (!(field.step_dt() <= limit)) {
     int i = 0;
     while (i < atom->nlocal - 1 && atom->tag[i] != tag) i++;
-    const char *const remedy = "use timestep, fix mpm/dt, or fix mpm ... dtcheck no";
+    const std::string remedy = remedy_of_step(lmp) + ", or fix mpm ... dtcheck no";
     if (c == 0.0)
       error->one(FLERR,
                  "Time step {:.6g} is above the limit {:.6g} of other physics, such as conduction "
@@ -238,7 +239,7 @@ void MPMTimeLimit::warn() const
 /** Warns if nobody has set the time step, and the default of the units is that of atoms: for most
  *  bodies so small that nothing moves. If a pair style indicates atoms or grains, it may be right,
  *  unless it is tiny. A time step that was set for other reasons than these points (grains, finite
- *  elements), or by fix mpm/dt, may have to be small. */
+ *  elements, heat or pore water), or by fix mpm/dt, may have to be small. */
 void MPMTimeLimit::warn_of_small() const
 {
   constexpr double SMALL = 1.0e-2;    // share of the limit below which a time step is small
@@ -248,6 +249,7 @@ void MPMTimeLimit::warn_of_small() const
     mine = std::min(mine, other->time_limit->stable_dt(tag, c));
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
   if (limit == std::numeric_limits<double>::max() || comm->me) return;    // there are no waves
+  if (!find_fixes(lmp, {"^mpm/dt$", "^dt/reset"}).empty()) return;
   const double dt = field.step_dt();
   if (update->dt_default) {
     if (dt < (force->pair ? 0.1 : 1.0) * SMALL * limit)
@@ -258,8 +260,7 @@ void MPMTimeLimit::warn_of_small() const
                      dt, update->unit_style, limit);
     return;
   }
-  const bool free = !force->pair && field.elements.empty() &&
-      modify->get_fix_by_style("^mpm/dt$|^dt/reset").empty();
+  const bool free = !force->pair && field.elements.empty() && field.plan->physics.empty();
   if (free && dt < SMALL * limit)
     error->warning(FLERR,
                    "Fix mpm: the time step {:.3g} is far below the limit {:.3g} of these points: "

@@ -98,7 +98,8 @@ void FixMPMIncompressible::setup_pre_neighbor()
 {
   flow->checks.check_points();
   refuse_other_integrators(lmp, *this);
-  flow->checks.check_others();
+  flow->checks.check_others(*this);
+  flow->checks.check_time_step();
   pre_neighbor();
 }
 
@@ -126,6 +127,7 @@ void FixMPMIncompressible::pre_force(int)
  *  period. */
 void FixMPMIncompressible::initial_integrate(int)
 {
+  flow->checks.uncoupled.look();
   flow->step();
   travel += flow->largest_velocity() * update->dt;
   for (int d = 0; d < domain->dimension; d++)

@@ -31,8 +31,8 @@ MPMFlowChecks::MPMFlowChecks(LAMMPS *lmp, const MPMIncompressibleOptions &option
                              MPMFlowLiquids &liquids, const MPMFlowParts &parts,
                              const std::string &id) :
     Pointers(lmp),
-    options(options), liquids(liquids), parts(parts), id(id),
-    who(fmt::format("Fix {} {}", STYLE, id))
+    uncoupled(lmp), options(options), liquids(liquids), parts(parts), id(id),
+    who(fmt::format("Fix {} {}", STYLE, id)), doubts(lmp)
 {
 }
 
@@ -148,7 +148,7 @@ void MPMFlowChecks::check_gas()
   warned_of_regions = true;
 }
 
-void MPMFlowChecks::check_others()
+void MPMFlowChecks::check_others(const Fix &mine)
 {
   for (const auto *other : modify->get_fix_by_style("^mpm/incompressible$"))
     if (other->id != id)
@@ -156,15 +156,15 @@ void MPMFlowChecks::check_others()
                  "Fluids of fixes {} and {} (style {}) would go through each other: give their "
                  "points to one of these fixes",
                  id, other->id, STYLE);
-  for (const auto *other : modify->get_fix_by_style("^mpm$"))
-    if (comm->me == 0 && !warned_of_bodies)
-      error->warning(FLERR,
-                     "Points of fix {} (style {}) go through those of fix {} (style {}), as "
-                     "neither feels the other",
-                     id, STYLE, other->id, other->style);
-  warned_of_bodies = true;
+  uncoupled.begin_run(mine);
+  doubts.check_regions();
   if (modify->get_fix_by_style("^mpm$").empty())    // fix mpm would warn of these itself
     warn_of_forgotten_points(lmp, STYLE, "the flow goes through them");
+}
+
+void MPMFlowChecks::check_time_step()
+{
+  doubts.check_time_step(who);
 }
 
 void MPMFlowChecks::check_depths() const

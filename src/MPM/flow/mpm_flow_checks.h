@@ -9,6 +9,8 @@
 #ifndef LMP_MPM_FLOW_CHECKS_H
 #define LMP_MPM_FLOW_CHECKS_H
 
+#include "field/mpm_coupling.h"
+#include "field/mpm_doubts.h"
 #include "flow/mpm_flow_parts.h"
 
 #include <string>
@@ -27,7 +29,7 @@ class MPMFlowChecks : protected Pointers {
    *  densities of solids. */
   void check_points();
   /** Checks for other fixes in the same box whose points this flow would go through. */
-  void check_others();
+  void check_others(const Fix &mine);
   /** Refuses points outside of the box. */
   void check_box() const;
   /** Refuses what the volume of a pocket, which follows from the flow through its surface, does not
@@ -39,13 +41,18 @@ class MPMFlowChecks : protected Pointers {
   /** Refuses a time step that is too large for the stiffness of solids. */
   void check_stiffness() const;
 
+  /** Warns of a time step that nobody has set. */
+  void check_time_step();
+
+  MPMUncoupled uncoupled;    ///< other matter in the same box
+
  private:
   const MPMIncompressibleOptions &options;
   MPMFlowLiquids &liquids;
   const MPMFlowParts &parts;
   const std::string id, who;
-  bool warned_of_size = false, warned_of_liquids = false, warned_of_bodies = false,
-       warned_of_regions = false;
+  MPMDoubts doubts;
+  bool warned_of_size = false, warned_of_liquids = false, warned_of_regions = false;
 
   double density(int i) const;
   void check_liquids();

@@ -17,6 +17,7 @@ FixStyle(mpm/handshake,FixMPMHandshake);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
+#include "field/mpm_coupling.h"
 #include "field/mpm_node_action.h"
 
 #include <string>
@@ -44,7 +45,11 @@ struct MPMHandshakeOptions {
 
 /** Zones where atoms and material points describe the same material. Each has a share of its energy
  *  and mass, and both move with one velocity at the nodes of a field. */
-class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHandshakeOptions {
+class FixMPMHandshake :
+    public FixMPMState,
+    public MPMNodeAction,
+    public MPMCoupling,
+    private MPMHandshakeOptions {
  public:
   FixMPMHandshake(class LAMMPS *, int, char **);
   ~FixMPMHandshake() override;
@@ -54,6 +59,11 @@ class FixMPMHandshake : public FixMPMState, public MPMNodeAction, private MPMHan
   }
   void init() override;
   void init_list(int, class NeighList *ptr) override { list = ptr; }
+  /** Its atoms, which have its ID here, and its field. */
+  bool couples(const std::string &one, const std::string &other) const override
+  {
+    return (one == field_name && other == id) || (one == id && other == field_name);
+  }
   void setup_pre_neighbor() override;
   void setup_post_neighbor() override { post_neighbor(); }
   void post_neighbor() override;

@@ -17,13 +17,17 @@
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
+#include "field/mpm_frame.h"
 #include "field/mpm_friction_heat.h"
 #include "force.h"
 #include "implicit/fix_mpm_implicit.h"
 #include "input.h"
+#include "region.h"
 #include "variable.h"
+#include "walls/mpm_region_surface.h"
 
 #include <algorithm>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -31,7 +35,7 @@ using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
 FixMPMHeat::FixMPMHeat(LAMMPS *lmp, int narg, char **arg) :
-    FixMPMState(lmp, narg, arg), flow(lmp, options, gradients, id)
+    FixMPMState(lmp, narg, arg), flow(lmp, options, gradients, id), doubts(lmp)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -176,6 +180,56 @@ void FixMPMHeat::setup(int)
   flow.clear_iterations();
   take_rubbing();
   check_temperatures();
+  check_places();
+}
+
+/** Conditions where no material is, or where it is inside of what is a wall for heat. */
+void FixMPMHeat::check_places()
+{
+  constexpr double FAR = std::numeric_limits<double>::max();
+  double mine[MPMHeatFaces::NFACE], least[MPMHeatFaces::NFACE];
+  std::fill_n(mine, (int) MPMHeatFaces::NFACE, FAR);
+  std::vector<bigint> inside(options.surfaces.size(), 0), all(inside.size());
+  std::vector<std::unique_ptr<MPMRegionSurface>> regions;
+  for (const auto &one : options.surfaces) {
+    auto *const region = one.region.empty() ? nullptr : domain->get_region_by_id(one.region);
+    if (region) region->prematch();
+    regions.push_back(region ? std::make_unique<MPMRegionSurface>(region, domain->dimension)
+                             : nullptr);
+  }
+  for (const auto &of : flow.fields) {
+    const MPMField &field = of->field;
+    const double h = field.lattice.h;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field.is_point(i)) continue;
+      const auto *const material = field.material_of(i);
+      if (!material || !material->material->conducts()) continue;
+      const double *const x = field.frame->places()[i];
+      for (int face = 0; face < MPMHeatFaces::NFACE; face++) {
+        const int d = face / 2;
+        const double at = face % 2 ? domain->boxhi[d] - x[d] : x[d] - domain->boxlo[d];
+        mine[face] = std::min(mine[face], at / h);
+      }
+      for (std::size_t k = 0; k < regions.size(); k++)
+        inside[k] += regions[k] && regions[k]->distance(x, 1.01 * h) < -h;
+    }
+  }
+  MPI_Allreduce(mine, least, (int) MPMHeatFaces::NFACE, MPI_DOUBLE, MPI_MIN, world);
+  MPI_Allreduce(inside.data(), all.data(), (int) all.size(), MPI_LMP_BIGINT, MPI_SUM, world);
+  const std::string who = fmt::format("Fix mpm/heat {}", id);
+  for (int face = 0; face < MPMHeatFaces::NFACE; face++)
+    if (options.conditions[face].kind != MPMHeatCondition::INSULATED && least[face] < FAR)
+      doubts.check(
+          MPMDoubts::FACE_ALONE, least[face], who,
+          fmt::format("{} has a condition, and the nearest material that conducts is {:.3g} "
+                      "node spacings away from it",
+                      MPMHeatOptions::FACE_NAME[face], least[face]));
+  for (std::size_t k = 0; k < regions.size(); k++)
+    if (options.surfaces[k].condition.kind != MPMHeatCondition::INSULATED)
+      doubts.check(MPMDoubts::INSIDE_REGION, (double) all[k], who,
+                   fmt::format("{} points are in region {}, more than a node spacing below its "
+                               "surface",
+                               all[k], options.surfaces[k].region));
 }
 
 void FixMPMHeat::check_temperatures()

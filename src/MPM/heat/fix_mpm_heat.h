@@ -16,6 +16,7 @@ FixStyle(mpm/heat,FixMPMHeat);
 #define LMP_FIX_MPM_HEAT_H
 
 #include "base/mpm_state.h"
+#include "field/mpm_doubts.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "heat/mpm_grain_heat.h"
@@ -79,7 +80,8 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
   MPMRows rubbing;    // [n][1] power that points get by pair style mpm/penalty in the next step
   std::vector<double> rubbed;                     // [n] heat by this power
   std::vector<class PairMPMPenalty *> rubbers;    // pair styles that give this heat
-  bool losses_known = false;                      // was warn_of_friction() called?
+  MPMDoubts doubts;
+  bool losses_known = false;    // was warn_of_friction() called?
 
   void require_each_step(const char *giver) const;
   void find_rubbers();
@@ -87,6 +89,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
   void take_rubbing();
   void give_rubbing(double dt);
   void check_temperatures();
+  void check_places();
   void conduct();
 };
 

@@ -37,7 +37,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
-FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
+FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) :
+    FixMPMState(lmp, narg, arg), doubts(lmp)
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/implicit steps all points of a fix mpm: use group all");
@@ -77,6 +78,7 @@ void FixMPMImplicit::init_physics(MPMPlan &plan)
     field->keep_old_velocities();
     field->time_limit->bound = false;
   }
+  if (!time.is_static()) doubts.check_time_step(fmt::format("Fix mpm/implicit {}", id));
   const MPMImplicitOptions &mine = *this;
   solver = std::make_unique<MPMImplicit>(lmp, fields, mine, kept);
 }

@@ -16,6 +16,7 @@ FixStyle(mpm/implicit,FixMPMImplicit);
 #define LMP_FIX_MPM_IMPLICIT_H
 
 #include "base/mpm_state.h"
+#include "field/mpm_doubts.h"
 #include "field/mpm_physics.h"
 #include "implicit/mpm_implicit.h"
 
@@ -54,6 +55,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
  private:
   std::vector<MPMField *> fields;
   std::unique_ptr<MPMImplicit> solver;
+  MPMDoubts doubts;
   MPMPointAccelerations kept;    // of points, for methods that need those of the previous step
   enum { STEPS, NEWTON, LINEAR, CUTS, INDEFINITE, MADE, STUCK, NTOTAL };
   double total[NTOTAL] = {};    // counts so far

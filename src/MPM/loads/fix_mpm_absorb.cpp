@@ -8,17 +8,19 @@
 
 #include "loads/fix_mpm_absorb.h"
 
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_coupling.h"
 #include "field/mpm_field.h"
 #include "field/mpm_guard.h"
+#include "field/mpm_setup_checks.h"
 #include "material/material.h"
 
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
-#include "modify.h"
 #include "region.h"
 #include "update.h"
 
@@ -75,21 +77,26 @@ void FixMPMAbsorb::init()
   if (!region)
     error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/absorb {} does not exist",
                region_id, id);
-  for (const auto *other : modify->get_fix_by_style("^mpm/(elements|mixture|handshake)$")) {
-    bigint mine = 0, all;
-    for (int i = 0; i < atom->nlocal; i++)
-      mine += (atom->mask[i] & groupbit & other->groupbit) && atom->vfrac[i] > 0.0;
-    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-    if (all)
+  for (const auto *other :
+       find_fixes(lmp, {"^mpm/elements$", "^mpm/mixture$", "^mpm/handshake$"})) {
+    // the group of fix mpm/handshake is that of its atoms; its points are those of a field
+    int group_bits = other->groupbit;
+    if (const auto *coupling = dynamic_cast<const MPMCoupling *>(other))
+      for (const auto *field : MPMField::all(lmp))
+        if (coupling->couples(field->id(), other->id)) group_bits = field->fix.groupbit;
+    if (points_in_both(lmp, groupbit, group_bits))
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/absorb {} cannot remove points of fix {} (style {}), which needs all of "
                  "them: give it another group",
                  id, other->id, other->style);
   }
-  for (const auto *field : MPMField::all(lmp))
-    refuse_field(lmp, *this, *field,
-                 {{field->options.every > 1 && (field->fix.groupbit & groupbit), "every",
-                   "points would go in between two steps of the cycle: use every 1"}});
+  for (const auto *field : MPMField::all(lmp)) {
+    const bool mine =
+        field->options.every > 1 && points_in_both(lmp, groupbit, field->fix.groupbit) > 0;
+    refuse_field(
+        lmp, *this, *field,
+        {{mine, "every", "points would go in between two steps of the cycle: use every 1"}});
+  }
 }
 
 bool FixMPMAbsorb::absorbs(int i) const

@@ -15,6 +15,7 @@ FixStyle(mpm/column,FixMPMColumn);
 #ifndef LMP_FIX_MPM_COLUMN_H
 #define LMP_FIX_MPM_COLUMN_H
 
+#include "field/mpm_coupling.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
 
@@ -26,7 +27,7 @@ namespace LAMMPS_NS {
 /** A body that represents a column of level ground. All nodes at the same height have one velocity,
  *  so that the column moves like ground of infinite extent, whatever its width. Fix mpm/dashpot
  *  takes the motion and the stress of the free field from it. */
-class FixMPMColumn : public Fix, public MPMNodeAction {
+class FixMPMColumn : public Fix, public MPMNodeAction, public MPMCoupling {
  public:
   FixMPMColumn(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::POST_FORCE; }
@@ -46,6 +47,11 @@ class FixMPMColumn : public Fix, public MPMNodeAction {
   }
   void act(double, Stage stage) override { level(stage); }
   void has_acted(MPMNodeAction &, Stage stage) override { level(stage); }
+  /** The free field meets nothing: it stands for ground that is far away. */
+  bool couples(const std::string &one, const std::string &other) const override
+  {
+    return one == of || other == of;
+  }
 
   // for the users of this column, the same on all ranks
 

@@ -228,36 +228,36 @@ MPMFace::Judgement MPMFace::judge() const
           all[1] / area, std::fabs((all[6] - all[7]) / area)};
 }
 
-/** A plane through a body is no surface there: the force acts on the section. Points above the
- *  plane, within a layer from it, would cover an area; area: that of the points below it. */
-static void tell_of_cut(LAMMPS *lmp, Region *region, const std::string &user, int igroup,
-                        double spacing, double area)
+/** The surface of a region that goes through a body is no surface there: the force acts on the
+ *  section. Points outside of the region, within a layer from it, would cover an area; area: that of
+ *  the points below it. */
+void MPMFace::tell_of_cut(const std::string &user, int igroup, double area) const
 {
-  const auto *const atom = lmp->atom;
   double mine = 0.0, beyond;
   for (const auto *field : MPMField::all(lmp)) {
     const int dim = field->lattice.dim;
     const MPMRegionSurface surface(region, dim);
     for (int i = 0; i < atom->nlocal; i++) {
-      if (!(atom->mask[i] & lmp->group->bitmask[igroup]) || !field->is_point(i) ||
+      if (!(atom->mask[i] & group->bitmask[igroup]) || !field->is_point(i) ||
           field->is_element_node(i))
         continue;
       const double *const x = atom->x[i];
-      if (region->match(x[0], x[1], x[2])) continue;
+      if (is_inside(x)) continue;
       const double volume = atom->vfrac[i] * field->points->jacobian(i);
       const double apart = spacing > 0.0 ? spacing
                                          : std::pow(volume / field->frame->circle(x[0]), 1.0 / dim);
       if (std::fabs(surface.distance(x, 1.01 * apart)) < apart) mine += volume / apart;
     }
   }
-  MPI_Allreduce(&mine, &beyond, 1, MPI_DOUBLE, MPI_SUM, lmp->world);
-  if (beyond > CUT * std::fabs(area) && lmp->comm->me == 0)
-    lmp->error->warning(
+  MPI_Allreduce(&mine, &beyond, 1, MPI_DOUBLE, MPI_SUM, world);
+  if (beyond > CUT * std::fabs(area) && comm->me == 0)
+    error->warning(
         FLERR,
-        "{}: points of group {} are right above the plane of region {}, too, next to {:.3g} of its "
-        "{:.3g} of area: there it goes through the inside of a body, and is no surface; move the "
-        "plane, or give a group of the points that are below the surface",
-        user, lmp->group->names[igroup], region->id, beyond, area);
+        "{}: points of group {} are right outside of region {}, too, next to {:.3g} of its {:.3g} "
+        "of "
+        "area: there its surface goes through the inside of a body, and the load acts on that "
+        "section; use a region that contains the body, or a group of points that it contains",
+        user, group->names[igroup], region->id, beyond, area);
 }
 
 void MPMFace::check(const std::string &user, int igroup, double known_area) const
@@ -293,7 +293,7 @@ void MPMFace::check(const std::string &user, int igroup, double known_area) cons
                    "{}: the area {:.5g} is given, and that of the points below region {} is about "
                    "{:.5g}: the force is that of the area which is given",
                    user, known_area, region->id, all[0]);
-  if (strcmp(region->style, "plane") == 0) tell_of_cut(lmp, region, user, igroup, spacing, all[0]);
+  tell_of_cut(user, igroup, all[0]);
 }
 
 void MPMFace::add_stress(const double *T, const double *n, double share, double *tau)

@@ -111,6 +111,7 @@ class MPMFace : protected Pointers {
   double sums[9] = {};
 
   bool is_inside(const double *x) const;
+  void tell_of_cut(const std::string &user, int igroup, double area) const;
   double spacing_of_parts(const MPMField &, int groupbit, const class MPMRegionSurface &) const;
 };
 

@@ -192,9 +192,12 @@ void SurfaceMesh::close(const std::string &name)
   }
   if (!open) return;
   throw std::runtime_error(
-      "The surface of file " + name + " is not closed, or its triangles do not all look outward: " +
-      std::to_string(open) + " of " + std::to_string(edges.size()) + " edges, one of them at " +
-      describe(example) + "; repair the mesh, or fill it as it is (surface leaky)");
+      "The surface of file " + name +
+      " is not closed, or its triangles do not all look outward: " + std::to_string(open) + " of " +
+      std::to_string(edges.size()) + " edges, one of them at " + describe(example) +
+      "; close the mesh, an open terrain by sides and a bottom, or, of a region that is filled "
+      "with "
+      "points and is no wall, fill it as it is (surface leaky)");
 }
 
 /** Volume, center, inertia: sums over the tetrahedra of the triangles and one point. */

@@ -40,7 +40,8 @@ static constexpr double LOCKS = 0.48;
 
 static constexpr int CHECK_EVERY = 10;    // steps between looks at the time step
 
-FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
+FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) :
+    FixMPMState(lmp, narg, arg), uncoupled(lmp)
 {
   const int dim = domain->dimension;
   Options options = declare(dim);
@@ -117,6 +118,7 @@ void FixMPMMesh::init()
 
   find_contact();
   find_heat();
+  uncoupled.begin_run(*this);
   const auto &materials = body->materials;
   const bool solid = std::any_of(materials.begin(), materials.end(), [](const auto *material) {
     return material->material->is_solid();
@@ -402,6 +404,7 @@ void FixMPMMesh::make_plan()
 
 void FixMPMMesh::initial_integrate(int)
 {
+  uncoupled.look();
   stages.run();
   steps++;
 }
@@ -427,8 +430,8 @@ void FixMPMMesh::check_dt()
     error->one(FLERR,
                "Time step {:.6g} is above the limit {:.6g} of fix mpm/mesh {} at step {}, height "
                "of a cell over the speed of "
-               "waves and of point {}; use timestep, fix mpm/dt, or a mesh without small cells",
-               update->dt, limit, id, update->ntimestep, tag);
+               "waves and of point {}; {}, or a mesh without small cells",
+               update->dt, limit, id, update->ntimestep, tag, remedy_of_step(lmp));
 }
 
 /** Scalar: number of points; vector: kinetic and stored energy, work of forces from outside, points

@@ -19,6 +19,7 @@ FixStyle(mpm/mesh,FixMPMMesh);
 #include "base/mpm_state.h"
 #include "base/mpm_step_limit.h"
 #include "declare/option.h"
+#include "field/mpm_coupling.h"
 #include "field/mpm_point_batches.h"
 #include "mesh/background_mesh.h"
 #include "meshgrid/mpm_mesh_body.h"
@@ -64,6 +65,7 @@ class FixMPMMesh :
   std::unique_ptr<MPMMeshBody> body;
   FixMPMMeshContact *contact = nullptr;
   FixMPMMeshHeat *heat = nullptr;
+  MPMUncoupled uncoupled;    // other matter in the same box
   MPMStageList stages;
   bigint steps = 0;
 

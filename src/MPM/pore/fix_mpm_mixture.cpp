@@ -106,7 +106,7 @@ void FixMPMMixture::init_action()
         FLERR, Error::NOLASTLINE,
         "Fix mpm/mixture {}: {} points of the water (fix mpm {}) are no fluid whose pressure "
         "depends on its density alone: use eos tait or linear, without strength and history "
-        "variables",
+        "variables, of which the temperature of thermal conducting is one",
         id, all[1], options.water_id);
   if (all[0])
     error->all(

@@ -16,6 +16,7 @@ FixStyle(mpm/mixture,FixMPMMixture);
 #define LMP_FIX_MPM_MIXTURE_H
 
 #include "base/mpm_state.h"
+#include "field/mpm_coupling.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_physics.h"
 #include "pore/mpm_mixture.h"
@@ -28,7 +29,11 @@ class MPMField;
 
 /** Soil and water at the same place, each a field (fix mpm) with its own points and velocity. They
  *  share the volume and the gradient of the water pressure, and exchange momentum by drag. */
-class FixMPMMixture : public FixMPMState, public MPMPhysics, public MPMNodeAction {
+class FixMPMMixture :
+    public FixMPMState,
+    public MPMPhysics,
+    public MPMNodeAction,
+    public MPMCoupling {
  public:
   FixMPMMixture(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
@@ -69,6 +74,10 @@ class FixMPMMixture : public FixMPMState, public MPMPhysics, public MPMNodeActio
 
   /** Is this field (ID) the soil or the water? */
   bool has(const std::string &field) const { return options.has(field); }
+  bool couples(const std::string &one, const std::string &other) const override
+  {
+    return has(one) && has(other);
+  }
   const char *soil_field() const { return options.soil_id.c_str(); }    ///< its ID
   const char *water_field() const { return options.water_id.c_str(); }
   double density_of_grains() const { return options.grain_density; }

@@ -28,6 +28,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -212,7 +213,9 @@ void FixMPMPore::init_physics(MPMPlan &plan)
     for (std::size_t k = 0; k < options.soils.size() && soil; k++)
       if (options.soils[k].material == soil->material) here[k] = 1;
   }
-  checks.warn_of_soils(here, !MPMGravity(lmp, "Fix mpm/pore").empty());
+  double h = std::numeric_limits<double>::max();
+  for (const auto *field : plan.fields) h = std::min(h, field->lattice.h);
+  checks.warn_of_soils(here, !MPMGravity(lmp, "Fix mpm/pore").empty(), h);
   flow.find_crossing();
   flow.watch.warn_of_contact();
   flow.is_implicit = !flow.wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();

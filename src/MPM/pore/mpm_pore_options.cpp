@@ -17,6 +17,7 @@
 #include "material/material.h"
 #include "material/material_point.h"
 #include "modify.h"
+#include "update.h"
 #include "variable.h"
 
 #include <algorithm>
@@ -405,15 +406,46 @@ void MPMPoreChecks::check_grains()
   grains_known = true;
 }
 
-void MPMPoreChecks::warn_of_soils(const std::vector<int> &here, bool has_weight) const
+/** The weight of water per volume is the divisor of hydraulic conductivities. */
+void MPMPoreChecks::compare_soil(const MPMPoreSoil &soil, const Material &material, bool has_weight,
+                                 double h)
+{
+  const std::string who = fmt::format("Fix mpm/pore {}: soil {}", id, soil.material);
+  const MPMPoreWater &water = options.water;
+  const double all = material.density(), wet = soil.porosity * water.density;
+  const double grains = (all - wet) / (1.0 - soil.porosity);
+  if (!has_weight)
+    doubts.check(MPMDoubts::LIGHT_SOIL, all / wet, who,
+                 fmt::format("the density {:.6g} is below that of the water in its pores, {:.6g}",
+                             all, wet));
+  doubts.check(
+      MPMDoubts::HEAVY_GRAINS, grains / water.density, who,
+      fmt::format("grains have the density {:.6g}, the water {:.6g}", grains, water.density));
+  const double stiffness = compression_modulus(material);
+  if (!(stiffness > 0.0) || soil.retention.can_dry()) return;
+  doubts.check(MPMDoubts::SOFT_WATER, water.bulk / (soil.porosity * stiffness), who,
+               fmt::format("the water has the bulk modulus {:.6g}, and the skeleton the stiffness "
+                           "{:.6g}",
+                           water.bulk, stiffness));
+  const double duration = update->dt * (double) update->nsteps;
+  if (soil.law == MPMPoreSoil::FORMULA || !(soil.permeability > 0.0) || !(duration > 0.0)) return;
+  const double spread = soil.permeability / water.resistance * stiffness * duration;
+  doubts.check(MPMDoubts::NO_FLOW, spread / (h * h), who,
+               fmt::format("in the time {:.6g} of the run, pressure spreads by {:.3g}", duration,
+                           sqrt(spread)));
+}
+
+void MPMPoreChecks::warn_of_soils(const std::vector<int> &here, bool has_weight, double h)
 {
   std::vector<int> anywhere(here.size(), 0);
   MPI_Allreduce(here.data(), anywhere.data(), (int) here.size(), MPI_INT, MPI_MAX, world);
-  for (std::size_t k = 0; k < options.soils.size() && comm->me == 0; k++) {
+  for (std::size_t k = 0; k < options.soils.size(); k++) {
     const auto &soil = options.soils[k];
     const auto *const fix =
         dynamic_cast<const FixMPMMaterial *>(modify->get_fix_by_id(soil.material));
     if (!fix) continue;    // init() reports this
+    if (anywhere[k]) compare_soil(soil, *fix->material, has_weight, h);
+    if (comm->me) continue;
     const double density = fix->material->density(), water = soil.porosity * options.water.density;
     if (!anywhere[k])
       error->warning(FLERR,

@@ -10,6 +10,7 @@
 #define LMP_MPM_PORE_OPTIONS_H
 
 #include "declare/option.h"
+#include "field/mpm_doubts.h"
 #include "pointers.h"
 #include "pore/mpm_pore_soil.h"
 #include "pore/mpm_pore_surface.h"
@@ -73,7 +74,7 @@ class MPMPoreChecks : protected Pointers {
  public:
   /** id: of the fix, for messages. */
   MPMPoreChecks(class LAMMPS *lmp, const MPMPoreOptions &options, const std::string &id) :
-      Pointers(lmp), options(options), id(id)
+      Pointers(lmp), options(options), id(id), doubts(lmp)
   {
   }
 
@@ -83,9 +84,10 @@ class MPMPoreChecks : protected Pointers {
   void check_grains();
   /** Warns of soils without points, as with the ID of another material, where the ground stays dry,
    *  and of soils that are lighter than their water, whose grains have a negative weight; without
-   *  gravity, this is a way to allow longer steps. here: which soils have points on this rank.
-   *  Collective. */
-  void warn_of_soils(const std::vector<int> &here, bool has_weight) const;
+   *  gravity, much lighter soil is a way to leave out inertia. Also of numbers that hardly fit
+   *  together. here: which soils have points on this rank; has_weight: there is
+   *  gravity; h: least node spacing. Collective. */
+  void warn_of_soils(const std::vector<int> &here, bool has_weight, double h);
   /** Checks options that implicit steps cannot have: their equations are linear in the pressure of
    *  nodes. */
   void check_implicit() const;
@@ -97,6 +99,9 @@ class MPMPoreChecks : protected Pointers {
   const MPMPoreOptions &options;
   const std::string id;
   bool grains_known = false;    // was check_grains() done?
+  MPMDoubts doubts;
+
+  void compare_soil(const MPMPoreSoil &, const MPM_NS::Material &, bool has_weight, double h);
 };
 
 }    // namespace LAMMPS_NS

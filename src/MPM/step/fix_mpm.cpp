@@ -221,7 +221,9 @@ void FixMPM::setup(int)
 
 void FixMPM::initial_integrate(int /*vflag*/)
 {
-  if (plan) plan->step();
+  if (!plan) return;
+  checks->uncoupled.look();
+  plan->step();
 }
 
 void FixMPM::pre_exchange()

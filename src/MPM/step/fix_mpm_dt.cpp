@@ -359,8 +359,10 @@ void FixMPMDt::post_run()
   else if (comm->me == 0 && update->nsteps > 0 && !warned_of_rest)
     error->warning(
         FLERR,
-        "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}: run more steps",
-        id, elapsed_time(*update), until);
+        "Fix mpm/dt {}: the run has ended at the time {:.6g}, before until {:.6g}, which takes "
+        "about "
+        "{:.3g} more steps like the last one: a run of more steps than that ends there by itself",
+        id, elapsed_time(*update), until, (until - elapsed_time(*update)) / update->dt);
   warned_of_rest = warned_of_rest || update->nsteps > 0;    // once: runs can have many parts
 }
 

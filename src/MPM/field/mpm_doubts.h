@@ -1,0 +1,61 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#ifndef LMP_MPM_DOUBTS_H
+#define LMP_MPM_DOUBTS_H
+
+#include "pointers.h"
+
+#include <set>
+#include <string>
+
+namespace MPM_NS {
+class Material;
+}
+
+namespace LAMMPS_NS {
+
+/** What an input may say, but hardly means. All such doubts are in one table: each is a ratio of two
+ *  numbers of the input, with the range that is doubtful, as ranges of single numbers depend on
+ *  units and scales. A fix that has the numbers has an object of this class, and gives a warning of
+ *  each kind once. */
+class MPMDoubts : protected Pointers {
+ public:
+  enum Kind {
+    SOFT_WATER,      ///< bulk modulus of pore water over the stiffness of the skeleton
+    LIGHT_SOIL,      ///< density of a saturated soil over that of the water in it
+    HEAVY_GRAINS,    ///< density of grains over that of water
+    NO_FLOW,         ///< way of pore water in the run over the node spacing, squared
+    TIME_STEP,       ///< the time step over the default one of the units
+    FACE_ALONE,      ///< least distance of material from a face with a condition, in node spacings
+    INSIDE_REGION    ///< material that is deep in a region with a condition, in points
+  };
+
+  explicit MPMDoubts(class LAMMPS *lmp) : Pointers(lmp) {}
+
+  /** Warns, unless it has before, if this ratio is doubtful. who: the start of the message; what:
+   *  the two numbers. The same on all ranks. */
+  void check(Kind, double ratio, const std::string &who, const std::string &what);
+  /** Warns of a time step that no command has set, of a solver that has no explicit limit with which
+   *  it could be compared. */
+  void check_time_step(const std::string &who);
+  /** Warns of regions across periodic faces: they have no images, so that walls, surfaces, and
+   *  bodies that they describe end there. A region that is the image of another one is the remedy. */
+  void check_regions();
+
+ private:
+  unsigned told = 0;                // bits of kinds
+  std::set<std::string> told_of;    // IDs of regions
+};
+
+/** Stiffness of a solid at rest that is compressed along one axis only [pressure]; 0 for fluids,
+ *  and if the law has no tangent of its own. */
+double compression_modulus(const MPM_NS::Material &);
+
+}    // namespace LAMMPS_NS
+#endif

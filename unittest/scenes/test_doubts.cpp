@@ -1,0 +1,172 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
+
+// labels: input
+
+// What an input may say, but hardly means: one warning in any number of runs, and none in a scene
+// where the same numbers are right, and none with other units of the same scene.
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+
+const std::string START = plane("si", "f f", "0 1 0 1", 2, 0.01) +
+    "region b block 0.2 0.8 0 0.4 INF INF\n",
+                  GRID = "fix grid all mpm 0.05\ncreate_points 1 region b ppc 2\n",
+                  CONDUCTS = "fix m all mpm/material density 1000 neohookean 1e6 0.3 thermal "
+                             "conducting 500 293 50\n",
+                  STEP = "fix dt all mpm/dt 0.5\n", RUNS = "run 2\nrun 2\n";
+
+static int told(const std::string &scene, const std::string &words)
+{
+  return times_said(scene + RUNS, words);
+}
+
+SERIAL_TEST(Doubts, HeatWhereNothingIs)
+{
+  const auto scene = START + GRID + CONDUCTS + STEP;
+  const std::string alone = "has a condition, and the nearest material";
+  EXPECT_EQ(told(scene + "fix heat all mpm/heat xlo temperature 400\n", alone), 1);
+  EXPECT_EQ(told(scene + "fix heat all mpm/heat xhi flux 10\n", alone), 1);
+  EXPECT_EQ(told(scene + "fix heat all mpm/heat ylo temperature 400\n", alone), 0);
+  EXPECT_EQ(told(scene + "fix heat all mpm/heat xlo insulated\n", alone), 0);
+  const std::string inside = "the inside of a region is a wall for heat",
+                    hot = "fix heat all mpm/heat region hot temperature 400\n";
+  EXPECT_EQ(told(scene + "region hot block 0 0.5 0.2 1 INF INF\n" + hot, inside), 1);
+  EXPECT_EQ(told(scene + "region hot block 0 1 0.4 1 INF INF\n" + hot, inside), 0);
+  EXPECT_EQ(told(scene + "region hot block 0.2 0.8 0 0.4 INF INF side out\n" + hot, inside), 0);
+}
+
+SERIAL_TEST(Doubts, WaterAndSoil)
+{
+  const auto scene = [](double scale, double density, double bulk, double permeability,
+                        const std::string &more = "") {
+    return START + GRID +
+        strprintf("fix soil all mpm/material density %g linear %g 0.3\n", density, 1e7 * scale) +
+        strprintf("fix w all mpm/pore %g 1000 %g soil soil 0.4 constant %g\n", bulk * scale,
+                  9810 * scale, permeability) +
+        more + STEP;
+  };
+  const std::string soft = "is its bulk modulus in the units of pressure",
+                    light = "grains would have a mass below zero", heavy = "units of density",
+                    still = "nothing flows";
+  const std::vector<std::string> all = {soft, light, heavy, still};
+  const auto only = [&](const std::string &text, const std::string &expected) {
+    for (const auto &words : all) EXPECT_EQ(told(text, words), words == expected) << text << words;
+  };
+  for (const double scale : {1.0, 1e-3}) {    // pressures in Pa and in kPa
+    only(scene(scale, 2000, 2.2e9, 1e-4), "");
+    only(scene(scale, 2000, 2.2, 1e-4), soft);
+    only(scene(scale, 300, 2.2e9, 1e-4), light);
+    only(scene(scale, 2000, 2.2e9, 1e-25), still);
+  }
+  only(scene(1.0, 1.0, 2.2e9, 1e-4), "");    // light soil, without inertia on purpose
+  only(scene(1.0, 2e6, 2.2e9, 1e-4), heavy);
+  EXPECT_EQ(told(scene(1.0, 300, 2.2e9, 1e-4, "fix g all gravity 9.81 vector 0 -1 0\n"),
+                 "must be that of saturated soil"),
+            2);    // with a weight, in each run
+}
+
+SERIAL_TEST(Doubts, NobodyHasSetTheTimeStep)
+{
+  const std::string words = "is the default of units si, which no command has changed";
+  const auto implicit = START + replaced(GRID, "mpm 0.05", "mpm 0.05 frame total") +
+      "fix m all mpm/material density 1000 neohookean 1e6 0.3\nfix w all mpm/boundary ylo stick\n"
+      "fix g all gravity 9.81 vector 0 -1 0\n";
+  EXPECT_EQ(told(implicit + "fix s all mpm/implicit euler\n", words), 1);
+  EXPECT_EQ(told(implicit + "fix s all mpm/implicit static\n", words), 0);
+  EXPECT_EQ(told(implicit + "fix s all mpm/implicit euler\ntimestep 1e-3\n", words), 0);
+  const auto flow = START +
+      "create_points 1 region b spacing 0.025\nfix w all mpm/incompressible 0.05 1000\n"
+      "fix g all gravity 9.81 vector 0 -1 0\n";
+  EXPECT_EQ(told(flow, words), 1);
+  EXPECT_EQ(told(flow + "timestep 1e-3\n", words), 0);
+  EXPECT_EQ(told(flow + replaced(STEP, "0.5", "0.5 max 0.01"), words), 0);
+}
+
+// a region that cuts a body loads a section of it
+SERIAL_TEST(Doubts, LoadInsideOfABody)
+{
+  const auto scene = START + GRID + CONDUCTS + STEP;
+  const std::string words = "goes through the inside of a body";
+  const auto load = [](const std::string &block) {
+    return "region lid " + block + "\nfix t all mpm/traction region lid traction 0 -1e4 0\n";
+  };
+  EXPECT_EQ(told(scene + load("block 0.2 0.8 0.3 0.5 INF INF"), words), 1);
+  EXPECT_EQ(told(scene + load("block INF INF INF 0.3 INF INF"), words), 1);
+  EXPECT_EQ(told(scene + load("block INF INF INF 0.4 INF INF"), words), 0);
+  EXPECT_EQ(told(scene + load("block 0.2 0.8 0 0.4 INF INF"), words), 0);
+  EXPECT_EQ(told(scene + load("plane 0 0.3 0 0 -1 0"), words), 1);
+}
+
+// regions have no periodic images; a region that is one is the remedy
+SERIAL_TEST(Doubts, RegionsAcrossPeriodicFaces)
+{
+  const auto scene = replaced(START, "boundary f f p", "boundary p f p") + GRID + CONDUCTS + STEP;
+  const std::string words = "reaches across the periodic face";
+  const auto wall = [](const std::string &region) {
+    return region + "\nfix w all mpm/boundary region w slip\n";
+  };
+  EXPECT_EQ(told(scene + wall("region w cylinder z 0.05 0.7 0.1 INF INF"), words), 1);
+  EXPECT_EQ(told(scene + wall("region w block 0.9 1.1 0.5 0.8 INF INF"), words), 1);
+  EXPECT_EQ(told(scene + wall("region w cylinder z 0.5 0.7 0.1 INF INF"), words), 0);
+  EXPECT_EQ(told(scene + wall("region w block -1 2 0.5 0.8 INF INF"), words), 0);
+  EXPECT_EQ(told(scene + wall("region w block INF 0.3 0.5 0.8 INF INF"), words), 0);
+  EXPECT_EQ(told(scene + wall("region w block 0.1 0.3 -0.5 -0.1 INF INF"), words), 0);
+  EXPECT_EQ(told(scene +
+                     wall("region one cylinder z 0.05 0.7 0.1 INF INF\n"
+                          "region two cylinder z 1.05 0.7 0.1 INF INF\n"
+                          "region w union 2 one two"),
+                 words),
+            0);
+}
+
+// columns and computes of LAMMPS that see a part of points only
+SERIAL_TEST(Doubts, PressureOfAtoms)
+{
+  const auto scene = START + GRID + CONDUCTS + STEP;
+  const std::string words = "not the temperature or stress of points",
+                    of_compute = "not their stress";
+  EXPECT_EQ(told(scene + "thermo_style custom step press\n", "WARNING: Fix mpm: columns"), 1);
+  EXPECT_EQ(told(scene, words), 1);    // the default style; no warning
+  EXPECT_EQ(told(scene, "WARNING: Fix mpm: columns"), 0);
+  EXPECT_EQ(told(scene + "thermo_style custom step time\n", words), 0);
+  EXPECT_EQ(told(scene + "compute s all stress/atom NULL\n", of_compute), 1);
+  EXPECT_EQ(told(scene + "compute p all pressure NULL virial\n", of_compute), 1);
+  EXPECT_EQ(told(scene + "group none type 2\ncompute s none stress/atom NULL\n", of_compute), 0);
+}
+
+// what a message asks for is the mistake itself
+SERIAL_TEST(Doubts, MistakesAreNamed)
+{
+  const auto two = START +
+      "create_points 1 region b spacing 0.025\nfix grid all mpm 0.05\n"
+      "fix w all mpm/incompressible 0.05 1000\n" +
+      STEP;
+  expect_error(two + "run 1\n", "give the fixes disjoint groups");
+  expect_error(START + "fix w all mpm/incompressible 0.05 viscosity 0.001\n",
+               "density is missing: expected floating point parameter instead of 'viscosity'");
+  const auto scene = START + GRID + CONDUCTS + STEP;
+  expect_error(scene + "fix heat all mpm/heat xlo convection 50\n", "needs H Tout");
+  expect_error(scene + "fix t all mpm/traction region b traction 0 -1e4\n", "needs tx ty tz");
+  const auto flow = START +
+      "create_points 1 region b spacing 0.025\n"
+      "fix w all mpm/incompressible 0.05 1000\n";
+  expect_error(flow + "fix heat all mpm/heat\nrun 1\n",
+               "those of fix w (style mpm/incompressible) have neither");
+}
+
+// the limit falls between two looks of fix mpm/dt: what its message names runs
+SERIAL_TEST(Doubts, RemedyOfTheTimeStep)
+{
+  const auto scene = [](const std::string &more) {
+    return plane("si", "f f", "0 1 0 1", 1, 0.02) + "fix grid all mpm 0.04\n" +
+        "region w block 0.3 0.6 0.3 0.6 INF INF\ncreate_points 1 region w ppc 2\n"
+        "fix m all mpm/material density 1 eos tait 1.0e3 7\n"
+        "fix walls all mpm/boundary xlo xhi ylo yhi slip\nvelocity all set -10 -10 0\n"
+        "fix step all mpm/dt 0.4 until 0.1 " +
+        more + "\nrun 100000\n";
+  };
+  expect_error(scene(""), "give fix mpm/dt step the keyword every 1, strain 0.05");
+  for (const char *remedy : {"every 1", "strain 0.05"}) EXPECT_EQ(error_of(scene(remedy)), "");
+}
