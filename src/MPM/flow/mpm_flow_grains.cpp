@@ -265,20 +265,20 @@ void MPMFlowGrains::begin(double time, const std::vector<double> &point_sums,
 template <int dim> void MPMFlowGrains::go_on(const std::vector<double> &velocity)
 {
   for (const auto &g : grains) {
-    const auto &fix = *fixes[g.kind];
+    auto &fix = *fixes[g.kind];
     const double *const gravity = fix.acceleration_of_gravity();
-    double gain[3];
+    double gain[3], impulse[3] = {0.0, 0.0, 0.0};
     interpolate<dim>(g, velocity.data(), gain);
     auto &kind = kinds[g.kind];
     kind.count++;
     for (int d = 0; d < dim; d++) {
       gain[d] -= g.before[d];
-      const double impulse = duration * (g.least[d] + g.rate * gain[d]),
-                   buoyancy = g.displaced * (gain[d] - duration * gravity[d]);
-      atom->v[g.i][d] += impulse / g.mass;
-      kind.impulses[d] += impulse - buoyancy;
+      impulse[d] = duration * (g.least[d] + g.rate * gain[d]);
+      const double buoyancy = g.displaced * (gain[d] - duration * gravity[d]);
+      kind.impulses[d] += impulse[d] - buoyancy;
       kind.impulses[3 + d] += buoyancy;
     }
+    fix.push(g.i, g.mass, impulse);
   }
 }
 

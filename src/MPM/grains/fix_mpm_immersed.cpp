@@ -103,7 +103,7 @@ Options MPMImmersedOptions::declare(int dim)
   return o;
 }
 
-FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   Options options = declare(domain->dimension);
   read_options(lmp, options, narg, arg, 3);
@@ -117,6 +117,8 @@ FixMPMImmersed::FixMPMImmersed(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, nar
   global_freq = 1;
   extscalar = extvector = 1;
   dynamic_group_allow = 1;
+  state.declare(later, "mpm/immersed:later", 3);
+  keep_arrays(false);
 }
 
 /** Stops with an error if the fluid is missing. With a field, that calls init_action(). */
@@ -167,9 +169,11 @@ void FixMPMImmersed::check_grains(const Fix *driver, double h)
     return all;
   };
 
-  // Who moves the grains, and which of the two half steps with forces are still to come?
+  // Who moves the grains, and which of the two half steps with forces are still to come? Where both
+  // are, grains get their impulses in two halves, as they do their forces
 
   movers.clear();
+  const bool halves = !field || field->options.every == 1;
   const int place = modify->find_fix(driver->id);
   for (int k = 0; k < modify->nfix; k++) {
     const Fix *ifix = modify->fix[k];
@@ -184,8 +188,20 @@ void FixMPMImmersed::check_grains(const Fix *driver, double h)
             "single spheres",
             id, n, ifix->id, ifix->style);
     }
-    if (ifix->time_integrate && !utils::strmatch(ifix->style, "^mpm"))
-      movers.push_back({ifix->groupbit, k < place ? 1.0 : 0.5});
+    if (!ifix->time_integrate || utils::strmatch(ifix->style, "^mpm")) continue;
+    movers.push_back(
+        {ifix->groupbit, halves || k < place ? 1.0 : 0.5, halves && k > place ? 0.5 : 1.0});
+    const bool late = k < place && count_all([&](int i) {
+                                     return is_grain(i) && (atom->mask[i] & ifix->groupbit);
+                                   }) > 0;
+    if (late && comm->me == 0 && !told_of_order)
+      error->warning(
+          FLERR,
+          "Fix mpm/immersed {}: fix {} moves grains before fix {} acts on them, so that "
+          "their velocities in output differ from their displacement per step by half of "
+          "what forces give to them in a step: define fix {} after fix {}",
+          id, ifix->id, driver->id, ifix->id, driver->id);
+    told_of_order = told_of_order || late;
   }
 
   const bigint points = count_all([&](int i) {
@@ -533,6 +549,30 @@ double FixMPMImmersed::steps_ahead(int i, double &mass) const
   return ahead;
 }
 
+/** A grain under a constant force then has the velocity of its displacement per step. With the whole
+ *  impulse before it moves, its velocity at the end of a step would be off by half of what forces
+ *  give to it in a step. */
+void FixMPMImmersed::push(int i, double mass, const double *impulse)
+{
+  double at_once = 1.0;
+  for (const auto &mover : movers)
+    if (atom->mask[i] & mover.groupbit) at_once = mover.at_once;
+  for (int d = 0; d < 3; d++) {
+    const double change = impulse[d] / mass;
+    atom->v[i][d] += at_once * change;
+    later[i][d] = (1.0 - at_once) * change;
+  }
+}
+
+void FixMPMImmersed::final_integrate()
+{
+  for (int i = 0; i < atom->nlocal; i++)
+    for (int d = 0; d < 3 && atom->vfrac[i] == 0.0; d++) {
+      atom->v[i][d] += later[i][d];
+      later[i][d] = 0.0;
+    }
+}
+
 void FixMPMImmersed::was_pushed(int n, const double *impulses, double dt)
 {
   count = n;
@@ -608,15 +648,16 @@ void FixMPMImmersed::drag(Grain &g, double dt)
   });
   const double slowing = g.coefficient / g.mass + near[3] / g.around;    // rate of the slip
   const double factor = dt * g.coefficient / (1.0 + dt * slowing);
-  double push[4] = {};
+  double on_fluid[4] = {}, impulse[3];
   for (int d = 0; d < 3; d++) {
     const double drag = factor * (g.fluid[d] - g.velocity[d] + near[d] / g.around);
-    atom->v[g.i][d] += (drag + g.buoyancy[d]) / g.mass;
+    impulse[d] = drag + g.buoyancy[d];
     force_now[d] += drag / g.part;
     force_now[3 + d] += drag + g.buoyancy[d] - drag / g.part;
-    push[d] = -drag / g.around;
+    on_fluid[d] = -drag / g.around;
   }
-  add_to_nodes(g, DRAG, push);
+  push(g.i, g.mass, impulse);
+  add_to_nodes(g, DRAG, on_fluid);
 }
 
 /** No sum is at an image. */
@@ -676,10 +717,11 @@ double FixMPMImmersed::compute_vector(int i)
 
 double FixMPMImmersed::memory_usage()
 {
-  return (double) (inner.capacity() + sums.capacity() * sizeof(double) +
-                   grains.capacity() * sizeof(Grain) + used.capacity() +
-                   (immersed.capacity() + slots.capacity()) * sizeof(int) +
-                   (nodes.capacity() + canonical.capacity()) * sizeof(int64_t));
+  return FixMPMState::memory_usage() +
+      (double) (inner.capacity() + sums.capacity() * sizeof(double) +
+                grains.capacity() * sizeof(Grain) + used.capacity() +
+                (immersed.capacity() + slots.capacity()) * sizeof(int) +
+                (nodes.capacity() + canonical.capacity()) * sizeof(int64_t));
 }
 
 /** Grains in a fluid are the only ones that meet something, unless there are other bodies. */

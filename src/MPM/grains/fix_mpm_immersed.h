@@ -15,10 +15,10 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 #ifndef LMP_FIX_MPM_IMMERSED_H
 #define LMP_FIX_MPM_IMMERSED_H
 
+#include "base/mpm_state.h"
 #include "declare/option.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
-#include "fix.h"
 #include "grains/mpm_drag.h"
 
 #include <cstdint>
@@ -43,15 +43,16 @@ struct MPMImmersedOptions {
  *  (fix mpm), with momentum exchange at the nodes around each grain, or an incompressible flow,
  *  which uses only the laws of this fix and exchanges momentum by itself (MPMFlowGrains). */
 class FixMPMImmersed :
-    public Fix,
+    public FixMPMState,
     public MPMNodeAction,
     public MPMListedPoints,
     private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
-  int setmask() override { return 0; }    // called by fix mpm
+  int setmask() override { return FixConst::FINAL_INTEGRATE; }
   void init() override;
   void setup(int) override;
+  void final_integrate() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;
@@ -74,9 +75,11 @@ class FixMPMImmersed :
   /** Is this local atom a grain in the fluid? */
   bool is_grain(int i) const;
   double volume(int i) const;    ///< in 2d per unit of depth
-  /** Number of steps for which forces still act on a grain before it moves. mass: of the grain;
-   *  infinite: held. */
+  /** Number of steps for which forces still act on a grain, of those before the end of its
+   *  impulses. mass: of the grain; infinite: held. */
   double steps_ahead(int i, double &mass) const;
+  /** Gives a grain of this mass the impulse of drag and buoyancy in a step. */
+  void push(int i, double mass, const double *impulse);
   /** Share of space that grains fill around a grain, corrected for the end of a bed. solid: mapped
    *  share at the grain; moment: its first moment sum N r [node spacings]; own: volume of the
    *  grain; order: of the splines; cell: volume of a cell. */
@@ -89,7 +92,8 @@ class FixMPMImmersed :
  private:
   struct Mover {    // a fix that integrates grains
     int groupbit;
-    double ahead;    // steps for which forces still act before the grain moves
+    double ahead;      // steps for which forces still act
+    double at_once;    // share of an impulse that the grain gets before it moves
   };
   struct Grain {
     int i;                 // local index
@@ -110,6 +114,7 @@ class FixMPMImmersed :
 
   MPMField *field = nullptr;
   std::vector<Mover> movers;
+  MPMRows later;                     // [atom][3] velocities that grains get at the end of the step
   std::vector<int> immersed;         // local indices of the grains of this rank
   std::vector<Grain> grains;         // grains with fluid around them
   std::vector<int64_t> nodes;        // nodes of all grains, none a periodic image
@@ -124,7 +129,7 @@ class FixMPMImmersed :
   double force_now[6] = {};    // impulses of drag [3] and buoyancy [3] on the grains of this rank
   int count = 0;
   double dt_last = 0.0;
-  bool told_of_weight = false;
+  bool told_of_weight = false, told_of_order = false;
 
   void check_grains(const Fix *driver, double h);
   bool has_fluid_around(int64_t node) const;
