@@ -276,6 +276,91 @@ SERIAL_TEST(FlowSolids, StripHangs)
   }
 }
 
+// a column alone in the air, with sides anywhere in a cell, on a floor without friction: it swings
+// about the state in which its middle has sunk by rho g H^2/(3 E'), with E' = 4 G in the plane
+SERIAL_TEST(FlowSolids, ColumnInAir)
+{
+  for (const int b : {1, 2})
+    for (const double at : {0.0, 0.3, 0.5, 0.75, 0.9}) {
+      if (b == 2 && at != 0.3) continue;
+      const double g = 0.004 / b, H = 8.5 * b;
+      Scene run(
+          plane("lj", "f f", strprintf("0 %d 0 %d", 14 * b, 10 * b), 1, 0.5) +
+          strprintf("region c block %d %d 0 %g INF INF\ncreate_points 1 region c spacing 0.5\n"
+                    "displace_atoms all move %g 0 0\nfix m all ",
+                    4 * b, 9 * b, H, at) +
+          neohookean(1.0, 1.0) + "fix w all mpm/incompressible 1 1 solid all\n" +
+          strprintf("fix g all gravity %.17g vector 0 -1 0\ntimestep 0.2\n", g));
+      double sum = 0.0;
+      int steps = 0;
+      run.each_step([&](double **) {
+        for (int i = 0; i < run.n(); i++) sum += run.x()[i][1] / run.n();
+        steps++;
+      });
+      run.commands(strprintf("run %d\n", 255 * b));    // three periods of 4 H/(E'/rho)^(1/2)
+      EXPECT_NEAR(measured(strprintf("%g cells, sides at %g: sinks over theory", H, at),
+                           (0.5 * H - sum / steps) / (g * H * H / 12.0)),
+                  1.0, 0.05);
+    }
+}
+
+// a beam that stands on a floor is loaded across at once: its end goes to twice its deflection at
+// rest, that of a beam with E' = 4 G and shear (S.P. Timoshenko)
+SERIAL_TEST(FlowSolids, BeamInAir)
+{
+  for (const int t : {4, 6})
+    for (const double at : {0.0, 0.3}) {
+      if (t == 6 && at == 0.0) continue;
+      const double L = 4 * t, h3 = t * t,
+                   w = 12.0 * std::pow(L, 4) / (32.0 * h3) + L * L * 6.0 / 10.0, g = 0.1 * t / w;
+      Scene run(plane("lj", "f f", strprintf("0 %d 0 %g", 20 + t, L + 4), 1, 0.5) +
+                strprintf("region c block 8 %d 0 %g INF INF\ncreate_points 1 region c spacing "
+                          "0.5\nregion t block INF INF %g INF INF INF\ngroup tip region t\n"
+                          "displace_atoms all move %g 0 0\nfix m all ",
+                          8 + t, L, L - 0.5, at) +
+                neohookean(1.0, 1.0) +
+                "fix w all mpm/incompressible 1 1 solid all wall ylo stick\n"
+                "variable x equal xcm(tip,x)\nrun 0\n" +
+                strprintf("fix g all gravity %.17g vector 1 0 0\ntimestep 0.2\n", g));
+      const double start = run.variable("x");
+      const int bit = run.lmp->group->bitmask[run.lmp->group->find("tip")];
+      double most = 0.0;
+      run.each_step([&](double **) {
+        double sum = 0.0;
+        int n = 0;
+        for (int i = 0; i < run.n(); i++)
+          if (run.lmp->atom->mask[i] & bit) {
+            sum += run.x()[i][0];
+            n++;
+          }
+        most = std::max(most, sum / n - start);
+      });
+      run.commands(strprintf("run %d\n", 140 * t));
+      EXPECT_NEAR(measured(strprintf("%d cells, sides at %g: deflection over theory", t, at),
+                           most / (0.2 * t)),
+                  1.0, t == 4 ? 0.13 : 0.08);
+    }
+}
+
+// a block of solid in 3d that stands in the middle of cells
+SERIAL_TEST(FlowSolids, BlockInAir)
+{
+  Scene run(box(3, "lj", "f f f", "0 8 0 8 0 9", 1, 0.5) +
+            "region c block 2 5 2 5 0 5\ncreate_points 1 region c spacing 0.5\n"
+            "displace_atoms all move 0.3 0.5 0\nfix m all " +
+            neohookean(1.0, 1.0) +
+            "fix w all mpm/incompressible 1 1 solid all\nfix g all gravity 0.02 vector 0 0 -1\n"
+            "timestep 0.15\nvariable z equal xcm(all,z)\n");
+  double sum = 0.0;
+  int steps = 0;
+  run.each_step([&](double **) {
+    sum += run.variable("z");
+    steps++;
+  });
+  run.commands("run 154\n");    // two periods of 4 H/(3 G/rho)^(1/2)
+  EXPECT_NEAR(measured("sinks over theory", (2.5 - sum / steps) / (0.02 * 25.0 / 9.0)), 1.0, 0.1);
+}
+
 // a stream with vortices and a heavy disk: momentum is that of points that fill cells evenly
 SERIAL_TEST(FlowSolids, Momentum)
 {

@@ -427,6 +427,16 @@ void MPMFlowLattice::reflect_paths(double *values) const
   }
 }
 
+void MPMFlowLattice::reflect_faces(double *values, int width) const
+{
+  for (auto image = images.rbegin(); image != images.rend(); ++image)
+    for (int k = 0; k < width; k++) {
+      const bool normal = k % lattice.dim == image->axis;
+      values[(int64_t) image->number * width + k] =
+          values[(int64_t) (normal ? image->source_face : image->source_cell) * width + k];
+    }
+}
+
 void MPMFlowLattice::reflect_cells(double *values) const
 {
   for (auto image = images.rbegin(); image != images.rend(); ++image)

@@ -119,6 +119,9 @@ class MPMFlowLattice : protected Pointers {
    *  without slip, the velocity grows with the square of the distance, so that it is even, and the
    *  face in the wall has the value for which the interpolated velocity is zero there. */
   void reflect_paths(double *values) const;
+  /** Sets values [cell][width] of faces beyond walls to those of the faces whose images they are;
+   *  value k is that of a face normal to k modulo dim. */
+  void reflect_faces(double *values, int width) const;
   /** Sets values in the middle of images of cells to those of the cells. */
   void reflect_cells(double *values) const;
   /** Sets values in the middle of images of cells to f(cell, axis, side, value of the cell). */

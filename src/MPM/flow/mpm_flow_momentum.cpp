@@ -29,6 +29,9 @@ static constexpr double ROUNDING = 1.0e-14;
 // a fluid that is a thousand times lighter were stable at 1.8 and unstable at 1.9, where one liquid
 // is stable up to 2
 static constexpr double MOST_OF_SEVERAL = 1.5;
+// filled shares of cells from which on, and up to which, only a part of the dual cells of their faces
+// is below the surface: those of cells whose side, and whose middle plus 0.4 of a spacing, is in it
+static constexpr double ALL_BELOW = 0.875, PART_BELOW = 0.82;
 // share of the inflow that may have no room, because of the tolerance of the pressure
 static constexpr double NOT_IN = 0.05;
 
@@ -251,12 +254,38 @@ void MPMFlowMomentum::add_forces(double dt)
       if (from[dim + c] > 0.0)
         fields.predicted[k * dim + c] += dt * from[2 * dim + c] / from[dim + c];
   }
-  for (int64_t k = 0; k < parts.cells.size() && parts.solids; k++)
-    for (int c = 0; c < dim; c++) {
-      const double mass = fields.sums[k * width + dim + c];
-      if (mass > 0.0) fields.predicted[k * dim + c] += dt * fields.solid_forces[k * dim + c] / mass;
-    }
+  if (parts.solids) add_stress(dt);
   parts.cells.reflect_velocities(fields.predicted.data());
+}
+
+/* ----------------------------------------------------------------------
+   Stresses accelerate the volume that the pressure accelerates, so that the pressure can take a part
+   of them: the dual cell of a face, or the part of it that is below the surface. The splines that
+   give momentum to faces reach farther.
+------------------------------------------------------------------------- */
+
+void MPMFlowMomentum::add_stress(double dt)
+{
+  const int dim = parts.cells.lattice.dim;
+  const double cell_volume = parts.cells.lattice.cell_volume();
+  by_solids.assign(fields.predicted.size(), 0.0);
+  for (const auto &cell : parts.cells.cells)
+    for (int c = 0; c < dim; c++) {
+      const int64_t k = cell.number, lower = cell.near[2 * c], face = k * dim + c;
+      if (fields.solid_forces[face] == 0.0 || cell.walls >> 2 * c & 1) continue;
+      double open = 1.0;
+      if (parts.regions)
+        open = 0.5 * (parts.regions->volume_fraction(k) + parts.regions->volume_fraction(lower));
+      const double filled = std::min(fields.filled[k], fields.filled[lower]),
+                   near = std::clamp((ALL_BELOW - filled) / (ALL_BELOW - PART_BELOW), 0.0, 1.0);
+      const double volume =
+          near * parts.solids->volume_around(k, c) + (1.0 - near) * open * cell_volume;
+      double density = options.density;
+      if (liquids.has_several_densities) density /= fields.inverse_density[face];
+      if (volume > 0.0) by_solids[face] = dt * fields.solid_forces[face] / (density * volume);
+    }
+  parts.cells.publish(by_solids.data(), dim);
+  for (std::size_t k = 0; k < by_solids.size(); k++) fields.predicted[k] += by_solids[k];
 }
 
 void MPMFlowMomentum::add_viscosity(double dt)
@@ -346,6 +375,7 @@ void MPMFlowMomentum::extend_into_air()
       fields.predicted[k] -= fields.shift[k];
   for (std::size_t k = 0; k < fields.velocity.size(); k++)
     if (fields.known[k] > 0.0) fields.velocity[k] -= fields.predicted[k];
+  if (parts.solids) extend_stress();
   parts.air->extend(fields.velocity, fields.known);
   for (const auto &cell : parts.cells.cells)
     for (int c = 0; c < dim; c++) {
@@ -367,6 +397,23 @@ void MPMFlowMomentum::extend_into_air()
   else if (parts.regions)
     parts.regions->hold(fields.velocity);
   parts.cells.reflect_velocities(fields.velocity.data());
+}
+
+/** Changes by the stress of solids go on into the air, too, as the pressure balances a part of them:
+ *  faces that solids do not reach get those of their neighbors. */
+void MPMFlowMomentum::extend_stress()
+{
+  const int dim = parts.cells.lattice.dim;
+  auto change = by_solids, known = fields.known;
+  for (std::size_t k = 0; k < known.size(); k++) change[k] *= known[k];
+  parts.air->extend(change, known);
+  for (int64_t k = 0; k < parts.cells.size(); k++)
+    for (int c = 0; c < dim; c++) {
+      const int64_t face = k * dim + c;
+      if (known[face] > 0.0)
+        fields.predicted[face] +=
+            (1.0 - parts.solids->support_of(k, c)) * (change[face] - by_solids[face]);
+    }
 }
 
 /** Checks that what comes in has a way out, or a surface that rises: otherwise the pressure has no

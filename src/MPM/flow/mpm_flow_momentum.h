@@ -41,7 +41,7 @@ class MPMFlowMomentum : protected Pointers {
   double memory_usage() const
   {
     return MPM_NS::bytes_of(at_surface, before_forces, without_hold, start_of_part,
-                            viscous_velocity, mobility, potentials, psi_of_parts);
+                            viscous_velocity, by_solids, mobility, potentials, psi_of_parts);
   }
 
  private:
@@ -55,6 +55,7 @@ class MPMFlowMomentum : protected Pointers {
   // without the inflow, and at the start of a part of the duration; velocities before the viscous
   // stress
   std::vector<double> at_surface, before_forces, without_hold, start_of_part, viscous_velocity;
+  std::vector<double> by_solids;    // [cell][dim] change of velocities by the stress of solids
   std::vector<double> mobility;
   // [cell] psi before the viscous stress; sum over parts
   std::vector<double> potentials, psi_of_parts;
@@ -62,6 +63,7 @@ class MPMFlowMomentum : protected Pointers {
   MPM_NS::SolveReport solve_part(double duration);
   MPM_NS::SolveReport project(double duration, double rounding);
   void add_forces(double dt);
+  void add_stress(double dt);
   void add_viscosity(double dt);
   void hold_and_resist(double duration);
   double rounding() const;
@@ -70,6 +72,7 @@ class MPMFlowMomentum : protected Pointers {
   MPM_NS::SolveReport find_stress(double dt, double rounding);
   const std::vector<double> *surface_psi() const;
   void extend_into_air();
+  void extend_stress();
   void find_forces_on_regions(double pressure_to_psi);
   void check_inflow() const;
 };

@@ -40,8 +40,12 @@ static constexpr double LEAST_SHARE = 0.5;
 // share of fluid next to a point from which on strains along the interface are those of the solid
 // alone
 static constexpr double MIXED = 0.1;
-// share of fluid next to a point that counts as none
-static constexpr double LEAST_FLUID = 1.0e-6;
+// share of fluid next to a point that counts as none, and of air
+static constexpr double LEAST_FLUID = 1.0e-6, NO_AIR = 1.0e-12;
+// filled share of the surroundings of a face from which on its velocity counts in strains as it is
+static constexpr double SUPPORTED = 0.5;
+// weight of boxes around a point next to air below which the point comes loose
+static constexpr double LOOSE = 0.1;
 
 /** Points of one material that wait for its law. */
 struct MPMFlowSolids::Pending {
@@ -91,6 +95,19 @@ template <int dim> struct Boxes {
       }
   }
 
+  /** The same with the boxes that a point of the width reach would have, which is at least width. */
+  void find(const double *t, double width, double reach)
+  {
+    find(t, reach);
+    for (int place = CELL; place <= NODE; place++)
+      for (int d = 0; d < dim; d++) {
+        const double low = t[d] + (place == NODE ? 0.5 : 0.0) - 0.5 * width;
+        const double first_share = (first[place][d] + 1.0 - low) / width;
+        share[place][d][0] = std::max(0.0, std::min(1.0, first_share));
+        share[place][d][1] = 1.0 - share[place][d][0];
+      }
+  }
+
   /** Calls f(number of the cell that is a box, or has it at its lower side; share) for the boxes at
    *  these places along each axis. */
   template <class F>
@@ -133,27 +150,45 @@ template <int dim> struct Boxes {
     });
   }
 
-  /** The same for a mean over boxes with other weights, weight(number of the cell of a box). No
-   *  calls where these are all zero. */
-  template <class W, class F>
-  void visit_gradients_by(const Grid &grid, const Grid::Block &block, int c, int d, const W &weight,
-                          const F &f) const
+  /** Calls f(k, low, high) for the boxes of the gradient along d of velocities along c; k: place of
+   *  a box along each axis, low and high: numbers of the cells of the faces of its difference. */
+  template <class F>
+  void visit_differences(const Grid &grid, const Grid::Block &block, int c, int d, const F &f) const
   {
     Place places[3];
     places_of(c, d, places);
     int base[3] = {0, 0, 0};
     for (int e = 0; e < dim; e++) base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
     const MPMFlowStencil<dim> reach(grid, block, base);
-    int64_t low[8], high[8];
-    double weights[8], sum = 0.0;
-    int n = 0;
     for_each_index<dim>({2, 2, 2}, [&](const int *k) {
       int above[3] = {k[0], k[1], k[2]};
       above[d]++;
-      low[n] = reach.number(k);
-      high[n] = reach.number(above);
-      weights[n] = weight(c == d ? low[n] : high[n]);
-      for (int e = 0; e < dim; e++) weights[n] *= share[places[e]][e][k[e]];
+      f(k, reach.number(k), reach.number(above));
+    });
+  }
+  /** Share in box k of the gradient along d of velocities along c. */
+  double share_in(int c, int d, const int *k) const
+  {
+    Place places[3];
+    places_of(c, d, places);
+    double of_box = 1.0;
+    for (int e = 0; e < dim; e++) of_box *= share[places[e]][e][k[e]];
+    return of_box;
+  }
+
+  /** The same as visit_gradients() for a mean over boxes with other weights, weight(low, high). No
+   *  calls where these are all zero. */
+  template <class W, class F>
+  void visit_gradients_by(const Grid &grid, const Grid::Block &block, int c, int d, const W &weight,
+                          const F &f) const
+  {
+    int64_t low[8], high[8];
+    double weights[8], sum = 0.0;
+    int n = 0;
+    visit_differences(grid, block, c, d, [&](const int *k, int64_t at_low, int64_t at_high) {
+      low[n] = at_low;
+      high[n] = at_high;
+      weights[n] = weight(at_low, at_high) * share_in(c, d, k);
       sum += weights[n++];
     });
     for (int j = 0; j < n && sum > 0.0; j++) {
@@ -329,6 +364,7 @@ template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
               -factor * atom->vfrac[i] * (tau[i][SYMMETRIC[c][d]] - (c == d ? mean : 0.0));
       Interface interface;
       const bool near = find_interface<dim>(block, t, place.width, interface);
+      const Air air = find_air<dim>(block, t, place.width);
       if (near) {
         std::copy_n(&stress[0][0], 9, &inside[0][0]);
         take_shear_off<dim>(interface.n, inside);
@@ -340,10 +376,15 @@ template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
           }
       }
       for (int c = 0; c < dim; c++)
-        for (int d = 0; d < dim; d++)
-          boxes.visit_gradients(cells.grid, block, c, d, [&](int64_t number, double slope) {
+        for (int d = 0; d < dim; d++) {
+          const auto add = [&](int64_t number, double slope) {
             forces[number * dim + c] += stress[c][d] * slope;
-          });
+          };
+          if (air.is_near)
+            visit_gradients_in_air<dim>(block, t, place.width, air, c, d, add);
+          else
+            boxes.visit_gradients(cells.grid, block, c, d, add);
+        }
       if (!near) continue;
       boxes.find(t, 1.0);
       for (int c = 0; c < dim; c++)
@@ -393,13 +434,18 @@ template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt,
           t[d] = std::max(0.0, std::min(t[d], (double) cells.lattice.ncell[d]));
       }
       boxes.find(t, place.width);
+      const Air air = find_air<dim>(block, t, place.width);
       double A[3][3] = {}, M[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
       for (int c = 0; c < dim; c++)
         for (int d = 0; d < dim; d++) {
           double sum = 0.0;
-          boxes.visit_gradients(cells.grid, block, c, d, [&](int64_t number, double slope) {
+          const auto add = [&](int64_t number, double slope) {
             sum += slope * velocity[number * dim + c];
-          });
+          };
+          if (air.is_near)
+            visit_gradients_in_air<dim>(block, t, place.width, air, c, d, add);
+          else
+            boxes.visit_gradients(cells.grid, block, c, d, add);
           A[c][d] = dt * inv_h * sum;
         }
       const int m = material_of(i);
@@ -451,6 +497,7 @@ void MPMFlowSolids::deform(const double *velocity, double dt, double viscosity)
 /* ----------------------------------------------------------------------
    Shares of solid in the volume of points in boxes of one spacing around corners of cells. The
    lattice has means of shears over these boxes.
+   Also the volume in boxes around faces, in which stresses act on their velocities.
 ------------------------------------------------------------------------- */
 
 template <int dim> void MPMFlowSolids::find_shares()
@@ -460,6 +507,7 @@ template <int dim> void MPMFlowSolids::find_shares()
   Boxes<dim> boxes;
   double t[3];
   shares.assign(cells.size() * width, 0.0);
+  faces.assign(cells.size() * 2 * dim, 0.0);
   for (const auto &run : cells.runs)
     for (int i = run.first; i < run.last; i++) {
       place.find(atom->x[i], atom->vfrac[i], t);
@@ -474,7 +522,18 @@ template <int dim> void MPMFlowSolids::find_shares()
                             shares[width * number + 2 * kind + 1] += all * share;
                           });
       }
+      for (int c = 0; c < dim; c++) {
+        typename Boxes<dim>::Place places[3] = {Boxes<dim>::CELL, Boxes<dim>::CELL,
+                                                Boxes<dim>::CELL};
+        places[c] = Boxes<dim>::NODE;
+        boxes.visit_boxes(cells.grid, cells.grid.blocks[run.slot], places,
+                          [&](int64_t number, double share) {
+                            faces[2 * dim * number + dim + c] += all * share;
+                          });
+      }
     }
+  cells.sum(faces.data(), 2 * dim);
+  cells.reflect_faces(faces.data(), 2 * dim);
   cells.sum_freely(shares.data(), width);
   solid_share.resize(cells.size());
   for (int64_t k = 0; k < cells.size(); k++) {
@@ -539,6 +598,64 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
   length = std::sqrt(length);
   for (int d = 0; d < dim; d++) n[d] /= length;
   return true;
+}
+
+double MPMFlowSolids::support_of(int64_t number, int c) const
+{
+  return std::min(1.0, volume_around(number, c) / (SUPPORTED * cells.lattice.cell_volume()));
+}
+
+/* ----------------------------------------------------------------------
+   Next to a free surface, boxes have faces around which there is hardly any mass. Their velocities
+   are those of the air, and a stress that acts on them accelerates them without limit. A point takes
+   its gradients from those of its boxes that are supported, as if these went on to the point, and
+   gives its stress to the same faces. If it has none, it takes those up to half a spacing farther
+   away.
+------------------------------------------------------------------------- */
+
+template <int dim>
+MPMFlowSolids::Air MPMFlowSolids::find_air(const Grid::Block &block, const double *t,
+                                           double width) const
+{
+  Boxes<dim> narrow, wide;
+  narrow.find(t, width, 1.0);
+  wide.find(t, 1.0, 1.0);
+  Air air;
+  double least = 1.0;
+  for (int c = 0; c < dim; c++)
+    for (int d = 0; d < dim; d++) {
+      double of_narrow = 0.0, of_wide = 0.0;
+      narrow.visit_differences(cells.grid, block, c, d,
+                               [&](const int *k, int64_t low, int64_t high) {
+                                 const double support = support_of_box(low, high, c);
+                                 of_narrow += support * narrow.share_in(c, d, k);
+                                 of_wide += support * wide.share_in(c, d, k);
+                               });
+      air.missing[c][d] = of_narrow < 1.0 - NO_AIR ? 1.0 - of_narrow : 0.0;
+      air.is_near = air.is_near || air.missing[c][d] > 0.0;
+      air.all[c][d] = of_narrow + air.missing[c][d] * of_wide;
+      least = std::min(least, air.all[c][d]);
+    }
+  air.hold = std::min(1.0, least / LOOSE);
+  return air;
+}
+
+template <int dim, class F>
+void MPMFlowSolids::visit_gradients_in_air(const Grid::Block &block, const double *t, double width,
+                                           const Air &air, int c, int d, const F &f) const
+{
+  if (air.hold == 0.0) return;
+  Boxes<dim> narrow, wide;
+  narrow.find(t, width, 1.0);
+  wide.find(t, 1.0, 1.0);
+  const double factor = air.hold / air.all[c][d];
+  narrow.visit_differences(cells.grid, block, c, d, [&](const int *k, int64_t low, int64_t high) {
+    const double weight = factor * support_of_box(low, high, c) *
+        (narrow.share_in(c, d, k) + air.missing[c][d] * wide.share_in(c, d, k));
+    if (weight == 0.0) return;
+    f(high, weight);
+    f(low, -weight);
+  });
 }
 
 /* ----------------------------------------------------------------------
@@ -748,7 +865,8 @@ void MPMFlowSolids::visit_batches(
 
 double MPMFlowSolids::memory_usage() const
 {
-  double bytes = bytes_of(history, shares, solid_share) + pending.size() * (double) sizeof(Pending);
+  double bytes =
+      bytes_of(history, shares, solid_share, faces) + pending.size() * (double) sizeof(Pending);
   for (const auto &one : pending) bytes += bytes_of(one->rows);
   return bytes;
 }

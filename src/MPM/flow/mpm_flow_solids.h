@@ -13,6 +13,7 @@
 #include "base/mpm_rows.h"
 #include "flow/mpm_flow_lattice.h"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -51,6 +52,15 @@ class MPMFlowSolids : protected Pointers {
 
   /** Forces of the present stress at faces: [cell][dim] in force units. */
   void give_forces(std::vector<double> &forces);
+  /** Volume of the points in the box of one spacing around the lower face of a cell along c. */
+  double volume_around(int64_t number, int c) const
+  {
+    const int dim = cells.lattice.dim;
+    return faces[2 * dim * number + dim + c];
+  }
+  /** How much of the surroundings of this face is filled: 1 where solids can give it all of their
+   *  force. */
+  double support_of(int64_t number, int c) const;
   /** Updates deformation and stress of the points to the end of a step of duration dt with these
    *  velocities [cell][dim]; to be called before the points move. Stops with an error if a point is
    *  turned inside out. */
@@ -91,6 +101,7 @@ class MPMFlowSolids : protected Pointers {
   std::vector<double> history;
   std::vector<double> shares;         // [cell][kind of box][2] volume of solids and of all points
   std::vector<double> solid_share;    // [cell]
+  std::vector<double> faces;          // [cell][2 dim] zeros, and volumes around faces
 
   int material_of(int i) const;
   template <class F> void add(int material, int i, const F &);
@@ -109,14 +120,29 @@ class MPMFlowSolids : protected Pointers {
   template <int dim>
   void leave_to_fluid(int i, const Interface &, double stiffness, double viscosity, double dt,
                       double A[3][3]) const;
-  /** Function of the number of a cell: share of solid in the box of gradients along d of velocities
-   *  along c. */
+  /** Air next to a point: what its boxes lack, their weight, and the share of its stress that it
+   *  can hold. */
+  struct Air {
+    bool is_near = false;
+    double missing[3][3], all[3][3], hold;
+  };
+  template <int dim> Air find_air(const MPM_NS::Grid::Block &, const double *t, double width) const;
+  template <int dim, class F>
+  void visit_gradients_in_air(const MPM_NS::Grid::Block &, const double *t, double width,
+                              const Air &, int c, int d, const F &) const;
+  double support_of_box(int64_t low, int64_t high, int c) const
+  {
+    return std::min(support_of(low, c), support_of(high, c));
+  }
+  /** Function of the cells of two faces: share of solid in the box of gradients along d of
+   *  velocities along c between them, where these are supported. */
   template <int dim> auto weight_of(int c, int d) const
   {
-    return [this, kind = c == d ? 0 : c + d](int64_t number) {
+    return [this, c, d](int64_t low, int64_t high) {
       constexpr int KINDS = dim == 2 ? 2 : 4;
-      const double *const s = shares.data() + 2 * KINDS * number + 2 * kind;
-      return s[1] > 0.0 ? s[0] / s[1] : 0.0;
+      const int kind = c == d ? 0 : c + d;
+      const double *const s = shares.data() + 2 * KINDS * (c == d ? low : high) + 2 * kind;
+      return s[1] > 0.0 ? s[0] / s[1] * support_of_box(low, high, c) : 0.0;
     };
   }
   void load(int material, double dt);
