@@ -497,3 +497,26 @@ TEST(FractureWatch, IsSilentWhereNothingBreaks)
     EXPECT_EQ(told_by(2.5, "", material).warnings, 0) << material;
   EXPECT_EQ(told_by(0.35, "", SOFT, -0.1).warnings, 0);    // pressed together
 }
+
+// Two elastic disks of eight cells collide. With the default, transfers take more than half of their
+// energy, which is said; with others, or where friction may take it, nothing is said.
+TEST(EnergyWatch, TellsWhatTransfersTake)
+{
+  const auto warnings = [](const std::string &transfer, const std::string &more = "") {
+    return lines_that_say(plane("si", "f f", "-0.5 0.5 -0.5 0.5", 2, 0.025) +
+                              "fix grid all mpm 0.05 " + transfer +
+                              "\nregion a cylinder z -0.3 -0.3 0.2 INF INF\n"
+                              "region b cylinder z 0.3 0.3 0.2 INF INF\n"
+                              "create_points 1 region a ppc 2\ncreate_points 2 region b ppc 2\n"
+                              "group a type 1\ngroup b type 2\n"
+                              "fix m all mpm/material density 1000 linear 1000 0.3\n"
+                              "velocity a set 0.1 0.1 0\nvelocity b set -0.1 -0.1 0\n" +
+                              more + "fix step all mpm/dt 0.3 max 0.001 until 3.5\nrun 1000000\n",
+                          "Transfers have taken")
+        .size();
+  };
+  EXPECT_EQ(warnings(""), 1u);
+  EXPECT_EQ(warnings("gain ignore"), 0u);
+  EXPECT_EQ(warnings("shape linear transfer flip 1.0 scheme musl"), 0u);
+  EXPECT_EQ(warnings("", "fix floor all mpm/boundary ylo friction 0.3\n"), 0u);
+}

@@ -328,10 +328,10 @@ void MPMEnergyWatch::check()
   run.lowest = std::min(run.lowest, unexplained);
   run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + fabs(spent));
   const double gained = run.gained = unexplained - run.lowest;
-  const double speed = AT_REST * fields[0]->lattice.h / update->dt;
   const auto &options = fields[0]->options;
-  if (run.warned || !(gained > options.most_gain * run.in_play) ||
-      !(run.in_play > 0.5 * force->mvv2e * now.mass * speed * speed) || is_round_off(gained))
+  look_for_loss(now.mass);
+  if (run.warned || !(gained > options.most_gain * run.in_play) || !is_much_in_play(now.mass) ||
+      is_round_off(gained))
     return;
   run.warned = true;
   const std::string text =
@@ -344,6 +344,49 @@ void MPMEnergyWatch::check()
     error->all(FLERR, Error::NOLASTLINE, "{}; fix mpm ... gain warn|ignore goes on", text);
   if (comm->me == 0)
     error->warning(FLERR, "{}; fix mpm ... gain sets what is done, and from which share on", text);
+}
+
+bool MPMEnergyWatch::is_much_in_play(double mass) const
+{
+  const double speed = AT_REST * fields[0]->lattice.h / update->dt;
+  return run.in_play > 0.5 * force->mvv2e * mass * speed * speed;
+}
+
+/** Friction, contact, and fixes that bring bodies to rest take energy as they should, and so does
+ *  transfer pic. */
+bool MPMEnergyWatch::only_transfers_take() const
+{
+  const auto &plan = *fields[0]->plan;
+  return std::all_of(plan.actions.begin(), plan.actions.end(),
+                     [](const auto *action) {
+                       return action->is_projection();
+                     }) &&
+      std::none_of(plan.physics.begin(), plan.physics.end(),
+                   [](const auto *other) {
+                     return other->brings_to_rest();
+                   }) &&
+      std::none_of(fields.begin(), fields.end(), [](const auto *field) {
+           return field->options.transfer == PIC;
+         });
+}
+
+/** Transfers damp motion that the lattice hardly resolves, such as that of bodies of a few cells
+ *  that collide. */
+void MPMEnergyWatch::look_for_loss(double mass)
+{
+  constexpr double MOST_LOSS = 0.2;
+  const double took = run.start.unexplained() - run.lowest;
+  if (run.warned_of_loss || !(took > MOST_LOSS * run.in_play) || !is_much_in_play(mass) ||
+      is_round_off(took) || !only_transfers_take())
+    return;
+  run.warned_of_loss = true;
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Transfers have taken {:.3g} % of the energy in play ({:.4g}) by step {} of this "
+        "run: motion is damped. Use a smaller spacing, transfer aflip 0.99, or shape "
+        "linear transfer flip 1.0 scheme musl; fix mpm ... gain ignore accepts it",
+        100.0 * took / run.in_play, run.in_play, update->ntimestep);
 }
 
 std::string MPMEnergyWatch::report() const

@@ -32,7 +32,9 @@ class MPMField;
  *  mpm/energy. It counts from its lowest value in a run, so that energy that a dissipative transfer
  *  took at first does not hide energy that is added later. It is compared with the energy in play:
  *  the largest sum so far of kinetic energy, stored energy, and energy spent in this run.
- */
+ *
+ *  Where nothing but transfers can take energy without an account, it also warns of what they
+ *  take. */
 class MPMEnergyWatch : public MPMWatch, protected Pointers {
  public:
   MPMEnergyWatch(class LAMMPS *lmp, const std::vector<MPMField *> &fields) :
@@ -100,7 +102,8 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
     Sums last;         // of the last check
     double elastic;    // at the start of the step that has noted it
     bigint noted;      // steps done by then, plus 1; 0: none
-    bool warned;       // has a warning been printed?
+    bool warned;       // has a warning of gained energy been printed?
+    bool warned_of_loss;
   } run = {};
 
   int number_met() const;
@@ -120,6 +123,9 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   void center_start();
   void begin(const Sums &);
   void check();
+  bool only_transfers_take() const;
+  void look_for_loss(double mass);
+  bool is_much_in_play(double mass) const;
 };
 
 }    // namespace LAMMPS_NS
