@@ -296,7 +296,8 @@ lammps_version() { sed -n 's/.*"\(.*\)".*/\1/p' "$LAMMPS_SOURCE_DIR/src/version.
 compiler_cache() {
   command -v ccache >/dev/null || return 0
   export CCACHE_DIR=$cache/ccache CCACHE_BASEDIR=$repo CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE=5G
-  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+  # precompiled headers need these; to trust the times of headers, too, would store one that was edited meanwhile
+  export CCACHE_SLOPPINESS=pch_defines,time_macros
   launcher="-D CMAKE_CXX_COMPILER_LAUNCHER=ccache"
 }
 
