@@ -426,4 +426,8 @@ SERIAL_TEST(FlowSolids, BadInput)
                    "is no hyperelastic law"},
                   {"timestep 1\n" + fix + "solid s", "too large for the stiffness of its solids"}},
                  "run 1\n");
+  for (const auto &[viscosity, warnings] : {std::pair{"", 1u}, std::pair{" viscosity 100", 0u}})
+    EXPECT_EQ(times_said(plain + fix + "solid s" + viscosity + "\ntimestep 0.001\nrun 1\nrun 1\n",
+                         "are not stable in a fluid of so little viscosity"),
+              warnings);
 }

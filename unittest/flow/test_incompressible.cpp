@@ -831,8 +831,8 @@ SERIAL_TEST(Impact, TellsFraction)
 
 // a block of 2 x 1 that meets a wall with the speed 1: the impulse of the wall is the integral of
 // the potential phi with phi_x = 1 there, which vanishes at the surface, 2 sum_n tanh(2 l_n)/l_n^3
-// with l_n = (n + 1/2) pi; also after a run in which the water was at rest, with long steps, and the
-// other way round
+// with l_n = (n + 1/2) pi; also after a run in which the water was at rest, with long steps, and
+// the other way round
 SERIAL_TEST(Impact, Impulse)
 {
   double exact = 0.0;

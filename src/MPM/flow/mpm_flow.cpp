@@ -46,9 +46,9 @@ static constexpr double FLIP_OF_BODIES = 0.98;
 // remains of flow in a fluid at rest, and fluid that falls or splashes, have 0.2 to 3
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
 // passes that fit the gradients of velocities with which points begin, at most, and their change of
-// velocities of faces, relative to the largest one, that ends them: a pass leaves up to 0.58 of what
-// is missing, and 0.9 at walls, if it takes all of the gradients that it finds, and less if it takes
-// more of their change
+// velocities of faces, relative to the largest one, that ends them: a pass leaves up to 0.58 of
+// what is missing, and 0.9 at walls, if it takes all of the gradients that it finds, and less if it
+// takes more of their change
 static constexpr int FITS = 200;
 static constexpr double FITTED = 1.0e-12, FIT = 1.5;
 // relative difference of sums over all velocities that is no more than another order of them

@@ -63,8 +63,8 @@ class MPMFlow : protected Pointers {
   double energy_of_spreading() const { return spreading_energy; }
 
   /** State for restart files: duration of the last step, limit of the next one with its forces, the
-   *  share that points keep, halvings, a sum over velocities, motion of regions, and gas; complete on the
-   *  first rank. Collective. */
+   *  share that points keep, halvings, a sum over velocities, motion of regions, and gas; complete
+   *  on the first rank. Collective. */
   std::vector<double> restart_data() const;
   /** Takes what restart_data() has given. */
   void restart(const double *from);

@@ -26,6 +26,10 @@ using namespace LAMMPS_NS;
 static const char *const STYLE = "mpm/incompressible";
 // ratio of the volume of a point to that of a cell that is too large
 static constexpr double LARGEST_POINT = 1.01;
+// kinematic viscosity from which on a fluid keeps surfaces of solids steady, over the spacing and
+// the speed of shear waves: blocks in water at rest were steady at 0.4, and disturbances of one of
+// them grew at 0.2
+static constexpr double STEADY = 0.4;
 
 MPMFlowChecks::MPMFlowChecks(LAMMPS *lmp, const MPMIncompressibleOptions &options,
                              MPMFlowLiquids &liquids, const MPMFlowParts &parts,
@@ -181,7 +185,7 @@ void MPMFlowChecks::check_depths() const
                all);
 }
 
-void MPMFlowChecks::check_stiffness() const
+void MPMFlowChecks::check_stiffness()
 {
   tagint tag;
   const double mine = std::sqrt(2.0) * parts.solids->stable_dt(tag);
@@ -192,4 +196,24 @@ void MPMFlowChecks::check_stiffness() const
                "{}: the time step {:.6g} is too large for the stiffness of its solids, which "
                "allows {:.6g}; reduce it, or let fix mpm/dt set it",
                who, update->dt, most);
+
+  // most is sqrt(2) h/(c sqrt(2 dim)), with the speed c of shear waves
+
+  const double h = options.h, speed = h / (most * std::sqrt((double) parts.cells.lattice.dim)),
+               enough = STEADY * speed * h;
+  if (warned_of_interfaces || liquids.largest_kinematic_viscosity() >= enough) return;
+  int mine_fluid = 0, fluid;
+  for (int i = 0; i < atom->nlocal && !mine_fluid; i++)
+    mine_fluid = parts.cells.is_point(i) && !parts.solids->holds(i);
+  MPI_Allreduce(&mine_fluid, &fluid, 1, MPI_INT, MPI_MAX, world);
+  if (!fluid) return;
+  warned_of_interfaces = true;
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "{}: surfaces of solids this stiff are not stable in a fluid of so little "
+        "viscosity: disturbances grow by a factor of e in some {:.2g} time units, until "
+        "points leave the solid; give it a viscosity of {:.3g}, or use fix mpm for both, "
+        "with fix mpm/contact",
+        who, 8.0 * h / speed, enough / liquids.acceleration_per_stress());
 }

@@ -38,8 +38,9 @@ class MPMFlowChecks : protected Pointers {
   /** Refuses points that begin deep in a wall. Points near its surface are moved out of it in the
    *  first step. */
   void check_depths() const;
-  /** Refuses a time step that is too large for the stiffness of solids. */
-  void check_stiffness() const;
+  /** Refuses a time step that is too large for the stiffness of solids, and warns of a fluid that
+   *  is not viscous enough for it. */
+  void check_stiffness();
 
   /** Warns of a time step that nobody has set. */
   void check_time_step();
@@ -52,7 +53,8 @@ class MPMFlowChecks : protected Pointers {
   const MPMFlowParts &parts;
   const std::string id, who;
   MPMDoubts doubts;
-  bool warned_of_size = false, warned_of_liquids = false, warned_of_regions = false;
+  bool warned_of_size = false, warned_of_liquids = false, warned_of_regions = false,
+       warned_of_interfaces = false;
 
   double density(int i) const;
   void check_liquids();

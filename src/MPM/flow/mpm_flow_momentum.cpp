@@ -29,8 +29,8 @@ static constexpr double ROUNDING = 1.0e-14;
 // a fluid that is a thousand times lighter were stable at 1.8 and unstable at 1.9, where one liquid
 // is stable up to 2
 static constexpr double MOST_OF_SEVERAL = 1.5;
-// filled shares of cells from which on, and up to which, only a part of the dual cells of their faces
-// is below the surface: those of cells whose side, and whose middle plus 0.4 of a spacing, is in it
+// filled shares of cells: with the first, the surface is in the side of a cell, and dual cells of
+// its faces are below the surface as a whole; from the second down, only the part counts that is
 static constexpr double ALL_BELOW = 0.875, PART_BELOW = 0.82;
 // share of the inflow that may have no room, because of the tolerance of the pressure
 static constexpr double NOT_IN = 0.05;
@@ -259,9 +259,9 @@ void MPMFlowMomentum::add_forces(double dt)
 }
 
 /* ----------------------------------------------------------------------
-   Stresses accelerate the volume that the pressure accelerates, so that the pressure can take a part
-   of them: the dual cell of a face, or the part of it that is below the surface. The splines that
-   give momentum to faces reach farther.
+   Stresses accelerate the volume that the pressure accelerates, so that the pressure can take a
+   part of them: the dual cell of a face, or the part of it that is below the surface. The splines
+   that give momentum to faces reach farther.
 ------------------------------------------------------------------------- */
 
 void MPMFlowMomentum::add_stress(double dt)
@@ -399,8 +399,8 @@ void MPMFlowMomentum::extend_into_air()
   parts.cells.reflect_velocities(fields.velocity.data());
 }
 
-/** Changes by the stress of solids go on into the air, too, as the pressure balances a part of them:
- *  faces that solids do not reach get those of their neighbors. */
+/** Changes by the stress of solids go on into the air, too, as the pressure balances a part of
+ *  them: faces that solids do not reach get those of their neighbors. */
 void MPMFlowMomentum::extend_stress()
 {
   const int dim = parts.cells.lattice.dim;

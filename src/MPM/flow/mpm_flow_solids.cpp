@@ -95,7 +95,7 @@ template <int dim> struct Boxes {
       }
   }
 
-  /** The same with the boxes that a point of the width reach would have, which is at least width. */
+  /** The same with the boxes that a point of the width reach, at least width, would have. */
   void find(const double *t, double width, double reach)
   {
     find(t, reach);
@@ -607,10 +607,10 @@ double MPMFlowSolids::support_of(int64_t number, int c) const
 
 /* ----------------------------------------------------------------------
    Next to a free surface, boxes have faces around which there is hardly any mass. Their velocities
-   are those of the air, and a stress that acts on them accelerates them without limit. A point takes
-   its gradients from those of its boxes that are supported, as if these went on to the point, and
-   gives its stress to the same faces. If it has none, it takes those up to half a spacing farther
-   away.
+   are those of the air, and a stress that acts on them accelerates them without limit. A point
+   takes its gradients from those of its boxes that are supported, as if these went on to the point,
+   and gives its stress to the same faces. If it has none, it takes those up to half a spacing
+   farther away.
 ------------------------------------------------------------------------- */
 
 template <int dim>
