@@ -105,6 +105,12 @@ SERIAL_TEST(Coupled, FlowAndOthers)
   const auto words = lines_that_say(membrane + "run 80\n", MEETS);
   ASSERT_EQ(words.size(), 1u);
   EXPECT_THAT(words[0], HasSubstr("eos tait for the fluid"));
+  // the same with the flow defined last
+  const std::string fix = "fix w low mpm/incompressible 0.05 1000\n";
+  EXPECT_EQ(
+      told(replaced(membrane, {{fix, ""}, {"fix nve high nve\n", "fix nve high nve\n" + fix}}),
+           "run 80\n"),
+      1);
 
   const auto mesh = start() + flow + "group low type 1\nfix F high mpm/mesh " + squares.name +
       "\ncreate_points 2 elements " + squares.name + " halve 1 group high\n" + solid +

@@ -33,7 +33,8 @@ void MPMUncoupled::find_matter()
 {
   list.clear();
   const auto bodies = find_fixes<MPMRefinedBody>(lmp);
-  for (const auto *fix : modify->get_fix_list()) {
+  const std::vector<Fix *> fixes = modify->get_fix_list();    // a copy, as each call makes it anew
+  for (const auto *fix : fixes) {
     const std::string style = fix->style, id = fix->id;
     if (style == "mpm") {
       const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const MPMRefinedBody *one) {
@@ -98,6 +99,11 @@ bool MPMUncoupled::are_coupled(const Matter &a, const Matter &b) const
     for (const auto &one : a.ids)
       for (const auto &other : b.ids)
         if (coupling->couples(one, other)) return true;
+  // elements that have nodes in both hold them together, as the seam of a bag does
+  for (const auto *body : find_fixes<MPMInternalForce>(lmp))
+    if (points_in_both(lmp, body->group_of_points(), a.bits) > 0 &&
+        points_in_both(lmp, body->group_of_points(), b.bits) > 0)
+      return true;
   return feel_pairs(a, b);
 }
 
