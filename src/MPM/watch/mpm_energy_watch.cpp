@@ -329,7 +329,7 @@ void MPMEnergyWatch::check()
   run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + fabs(spent));
   const double gained = run.gained = unexplained - run.lowest;
   const auto &options = fields[0]->options;
-  look_for_loss(now.mass);
+  look_for_loss(now);
   if (run.warned || !(gained > options.most_gain * run.in_play) || !is_much_in_play(now.mass) ||
       is_round_off(gained))
     return;
@@ -371,13 +371,14 @@ bool MPMEnergyWatch::only_transfers_take() const
 }
 
 /** Transfers damp motion that the lattice hardly resolves, such as that of bodies of a few cells
- *  that collide. */
-void MPMEnergyWatch::look_for_loss(double mass)
+ *  that collide. Where loads do work, bodies come to rest under them, as they mostly should. */
+void MPMEnergyWatch::look_for_loss(const Sums &now)
 {
-  constexpr double MOST_LOSS = 0.2;
+  constexpr double MOST_LOSS = 0.2, LITTLE_WORK = 0.1;
   const double took = run.start.unexplained() - run.lowest;
-  if (run.warned_of_loss || !(took > MOST_LOSS * run.in_play) || !is_much_in_play(mass) ||
-      is_round_off(took) || !only_transfers_take())
+  if (run.warned_of_loss || !(took > MOST_LOSS * run.in_play) || !is_much_in_play(now.mass) ||
+      !(std::fabs(now.work - run.start.work) < LITTLE_WORK * run.in_play) || is_round_off(took) ||
+      !only_transfers_take())
     return;
   run.warned_of_loss = true;
   if (comm->me == 0)
