@@ -434,9 +434,11 @@ TEST(CreatePoints, Overlap)
                     HasSubstr("overlap yes")));
   EXPECT_EQ(atoms(scene).size(), 40u);
 
-  // a face through the sites belongs to both regions
-  scene.commands("region c block 0.475 0.6 0 0.1 0 0.1");
-  expect_error(scene, "create_points 2 region c ppc 2", "4 existing");
+  // sites on a face that the regions share stay with the body that was there
+  Scene touching(box3d +
+                 "region a block 0 0.5 0 0.1 0 0.1\nregion c block 0.475 0.6 0 0.1 0 0.1\n"
+                 "create_points 1 region a ppc 2\ncreate_points 2 region c ppc 2");
+  EXPECT_EQ(atoms(touching).size(), 48u);
 
   // at another spacing, finer and coarser
   expect_error(scene, "create_points 2 region b ppc 3", "existing");

@@ -75,7 +75,7 @@ bool MPMUncoupled::feel_pairs(const Matter &a, const Matter &b) const
   const auto styles = MPMPairStyle::all(*force);
   const bool acts = std::any_of(styles.begin(), styles.end(), [&](const MPMPairStyle &style) {
     if (style.name == "mpm/penalty") return a.kind == FIELD && b.kind == FIELD;
-    if (style.name == "mpm/sheet") return a.kind == ELEMENTS && b.kind == ELEMENTS;
+    if (style.name == "mpm/sheet") return a.kind == ELEMENTS || b.kind == ELEMENTS;
     return style.name != "zero";
   });
   if (!acts) return false;
