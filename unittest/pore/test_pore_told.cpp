@@ -77,7 +77,7 @@ SERIAL_TEST(Soils, WithoutPointsOrTooLightAreTold)
   EXPECT_EQ(told("soil dry 0.4 constant 1e-4", "2000", gravity, "has no points of soil dry"), 1);
   EXPECT_EQ(told("", "400", gravity, "grains have a weight below zero"), 1);
   EXPECT_EQ(told("", "401", gravity, "WARNING: Fix mpm/pore"), 0);
-  EXPECT_EQ(told("", "400", "", "WARNING: Fix mpm/pore"), 0);
+  EXPECT_EQ(told("", "399", "", "grains would have a mass below zero"), 1);
 }
 
 // grains that are softer than the soil that they make, which is the same as a coefficient of Biot
