@@ -329,7 +329,7 @@ void MPMEnergyWatch::check()
   run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + fabs(spent));
   const double gained = run.gained = unexplained - run.lowest;
   const auto &options = fields[0]->options;
-  look_for_loss(now);
+  look_for_loss(now.mass);
   if (run.warned || !(gained > options.most_gain * run.in_play) || !is_much_in_play(now.mass) ||
       is_round_off(gained))
     return;
@@ -353,32 +353,34 @@ bool MPMEnergyWatch::is_much_in_play(double mass) const
 }
 
 /** Friction, contact, and fixes that bring bodies to rest take energy as they should, and so does
- *  transfer pic. */
+ *  transfer pic. Under loads, bodies come to rest, as they mostly should. */
 bool MPMEnergyWatch::only_transfers_take() const
 {
   const auto &plan = *fields[0]->plan;
-  return std::all_of(plan.actions.begin(), plan.actions.end(),
-                     [](const auto *action) {
-                       return action->is_projection();
-                     }) &&
+  for (auto *fix : modify->get_fix_list())
+    if (modify->get_fix_mask(fix) & FixConst::POST_FORCE) return false;
+  return !force->pair &&
+      std::all_of(plan.actions.begin(), plan.actions.end(),
+                  [](const auto *action) {
+                    return action->is_projection();
+                  }) &&
       std::none_of(plan.physics.begin(), plan.physics.end(),
                    [](const auto *other) {
                      return other->brings_to_rest();
                    }) &&
       std::none_of(fields.begin(), fields.end(), [](const auto *field) {
-           return field->options.transfer == PIC;
-         });
+        return field->options.transfer == PIC;
+      });
 }
 
 /** Transfers damp motion that the lattice hardly resolves, such as that of bodies of a few cells
- *  that collide. Where loads do work, bodies come to rest under them, as they mostly should. */
-void MPMEnergyWatch::look_for_loss(const Sums &now)
+ *  that collide. */
+void MPMEnergyWatch::look_for_loss(double mass)
 {
-  constexpr double MOST_LOSS = 0.2, LITTLE_WORK = 0.1;
+  constexpr double MOST_LOSS = 0.2;
   const double took = run.start.unexplained() - run.lowest;
-  if (run.warned_of_loss || !(took > MOST_LOSS * run.in_play) || !is_much_in_play(now.mass) ||
-      !(std::fabs(now.work - run.start.work) < LITTLE_WORK * run.in_play) || is_round_off(took) ||
-      !only_transfers_take())
+  if (run.warned_of_loss || !(took > MOST_LOSS * run.in_play) || !is_much_in_play(mass) ||
+      is_round_off(took) || !only_transfers_take())
     return;
   run.warned_of_loss = true;
   if (comm->me == 0)

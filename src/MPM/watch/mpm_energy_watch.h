@@ -124,7 +124,7 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   void begin(const Sums &);
   void check();
   bool only_transfers_take() const;
-  void look_for_loss(const Sums &);
+  void look_for_loss(double mass);
   bool is_much_in_play(double mass) const;
 };
 
