@@ -499,7 +499,7 @@ TEST(FractureWatch, IsSilentWhereNothingBreaks)
 }
 
 // Two elastic disks of eight cells collide. With the default, transfers take more than half of their
-// energy, which is said; with others, or where friction may take it, nothing is said.
+// energy, which is said; with others, or where there are loads, nothing is said.
 TEST(EnergyWatch, TellsWhatTransfersTake)
 {
   const auto warnings = [](const std::string &transfer, const std::string &more = "") {
@@ -518,5 +518,5 @@ TEST(EnergyWatch, TellsWhatTransfersTake)
   EXPECT_EQ(warnings(""), 1u);
   EXPECT_EQ(warnings("gain ignore"), 0u);
   EXPECT_EQ(warnings("shape linear transfer flip 1.0 scheme musl"), 0u);
-  EXPECT_EQ(warnings("", "fix floor all mpm/boundary ylo friction 0.3\n"), 0u);
+  EXPECT_EQ(warnings("", "fix g all gravity 1e-6 vector 0 -1 0\n"), 0u);
 }
