@@ -373,10 +373,10 @@ TEST(Point, ErrorsNameTheRemedy)
 {
   const std::string rubber = " material " + RUBBER;
   const MPM_TEST::Mistake cases[] = {
-      {"mpm_point", "Illegal mpm_point command: missing argument"},
+      {"mpm_point", "missing argument(s), needs rate"},
       {"mpm_point NULL tension 1 time 1" + rubber,
        "Unknown mpm_point path tension: must be one of uniaxial/stress uniaxial/strain shear"},
-      {"mpm_point NULL shear", "Illegal mpm_point command: missing argument"},
+      {"mpm_point NULL shear", "missing argument(s), needs rate"},
       {"mpm_point NULL shear 0 time 1" + rubber, "rate that is different from zero"},
       {"mpm_point NULL shock 1 time 1" + rubber, "Mpm_point shock rate must be below 0: 1"},
       {"mpm_point NULL shear x time 1" + rubber, "Expected floating point"},

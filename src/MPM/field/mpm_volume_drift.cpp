@@ -290,9 +290,10 @@ void MPMVolumeDrift::note(int every)
 void MPMVolumeDrift::step()
 {
   const int every = looks_every();
-  if (every == 0 ||
-      ((update->ntimestep / field.options.every) % every && update->ntimestep != update->laststep))
-    return;
+  // also for the summary of a run that is not short
+  const bool last =
+      update->ntimestep == update->laststep && update->laststep - update->firststep >= LOOK_EVERY;
+  if (every == 0 || ((update->ntimestep / field.options.every) % every && !last)) return;
   const bool now = corrects && (update->ntimestep / field.options.every) % every == 0;
   find_filling();
   if (now) find_strain();
