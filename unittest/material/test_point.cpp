@@ -373,7 +373,7 @@ TEST(Point, ErrorsNameTheRemedy)
 {
   const std::string rubber = " material " + RUBBER;
   const MPM_TEST::Mistake cases[] = {
-      {"mpm_point", "missing argument(s), needs rate"},
+      {"mpm_point", "Illegal mpm_point command: missing argument"},
       {"mpm_point NULL tension 1 time 1" + rubber,
        "Unknown mpm_point path tension: must be one of uniaxial/stress uniaxial/strain shear"},
       {"mpm_point NULL shear", "missing argument(s), needs rate"},
