@@ -90,7 +90,7 @@ void MPMDoubts::check_regions()
     for (int d = 0; d < domain->dimension; d++) {
       const auto [lo, hi] = extent(*region, d);
       const double length = domain->prd[d], least = 1.0e-6 * length;
-      const bool below = lo<domain->boxlo[d] - least, above = hi> domain->boxhi[d] + least;
+      const bool below = (lo < domain->boxlo[d] - least), above = (hi > domain->boxhi[d] + least);
       // one that is as long as the box needs no images, and INF means the face of the box
       if (!domain->periodicity[d] || below == above || hi - lo > length - least || lo < -INFINITE ||
           hi > INFINITE || hi < domain->boxlo[d] || lo > domain->boxhi[d])
@@ -111,13 +111,15 @@ void MPMDoubts::check_regions()
   }
 }
 
-double LAMMPS_NS::compression_modulus(const Material &material)
+MPMRestModuli::MPMRestModuli(const Material &material)
 {
-  if (!material.is_solid() || !material.has_tangent()) return 0.0;
+  if (!material.is_solid() || !material.has_tangent()) return;
   MaterialPoint point(material);
   const auto tangent = std::make_unique<Tangent>();
   for (auto &row : point.batch.A) row[0] = 0.0;
   point.batch.Jold[0] = point.batch.J[0];
   material.update_with_tangent(point.batch, *tangent);
-  return tangent->stress[0][0][0];
+  compression = tangent->stress[0][0][0];
+  lambda = tangent->stress[0][4][0];
+  shear = tangent->stress[3][1][0];
 }

@@ -53,9 +53,18 @@ class MPMDoubts : protected Pointers {
   std::set<std::string> told_of;    // IDs of regions
 };
 
-/** Stiffness of a solid at rest that is compressed along one axis only [pressure]; 0 for fluids,
- *  and if the law has no tangent of its own. */
-double compression_modulus(const MPM_NS::Material &);
+/** Moduli of a solid at rest, by its tangent along x and y [pressure]; zero for fluids, and if the
+ *  law has no tangent of its own. */
+struct MPMRestModuli {
+  double compression = 0.0;    ///< along one axis, without strain across
+  double lambda = 0.0, shear = 0.0;
+
+  explicit MPMRestModuli(const MPM_NS::Material &);
+  double poisson_ratio() const
+  {
+    return lambda > 0.0 && shear > 0.0 ? 0.5 * lambda / (lambda + shear) : 0.0;
+  }
+};
 
 }    // namespace LAMMPS_NS
 #endif

@@ -25,7 +25,6 @@
 #include "force.h"
 #include "group.h"
 #include "lammps.h"
-#include "material/material_point.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
@@ -37,7 +36,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <memory>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -87,20 +85,6 @@ void MPMSetupChecks::coupling()
   uncoupled.begin_run(field.fix);
 }
 
-/** Poisson ratio of new points, by the tangent at rest; 0 for fluids, and if the law has no tangent
- *  of its own. */
-static double poisson_ratio(const Material &material)
-{
-  if (!material.is_solid() || !material.has_tangent()) return 0.0;
-  MaterialPoint point(material);
-  const auto tangent = std::make_unique<Tangent>();
-  for (auto &row : point.batch.A) row[0] = 0.0;
-  point.batch.Jold[0] = point.batch.J[0];
-  material.update_with_tangent(point.batch, *tangent);
-  const double lambda = tangent->stress[0][4][0], shear = tangent->stress[3][1][0];
-  return lambda > 0.0 && shear > 0.0 ? 0.5 * lambda / (lambda + shear) : 0.0;
-}
-
 /** Points of nearly incompressible solids lock, and averages over points make what bends, and does
  *  not lock, too soft. */
 void MPMSetupChecks::locking()
@@ -122,7 +106,7 @@ void MPMSetupChecks::locking()
   for (std::size_t k = 0; k < all.size(); k++) {
     if (!all[k]) continue;
     const auto *const material = field.materials[k];
-    const double ratio = poisson_ratio(*material->material);
+    const double ratio = MPMRestModuli(*material->material).poisson_ratio();
     if (ratio >= LOCKS) locks = material;
     // plastic flow keeps the volume, too
     const bool is_free = ratio > 0.0 && ratio < FREE && material->nhistory == 0;
@@ -139,13 +123,13 @@ void MPMSetupChecks::locking()
         "Fix mpm {}: locking averages what does not lock: fix mpm/material {} has a "
         "Poisson ratio of {:.5g}, with which bodies that bend get 4 to 6 % too soft with "
         "4 cells in their depth, and 17 to 22 % with 2: remove locking",
-        field.id(), free->id, poisson_ratio(*free->material));
+        field.id(), free->id, MPMRestModuli(*free->material).poisson_ratio());
   else
     error->warning(FLERR,
                    "Fix mpm {}: fix mpm/material {} has a Poisson ratio of {:.5g}, with which "
                    "points lock, and bodies that bend or are indented are 7 to 20 % too stiff on "
                    "10 cells: use locking fbar or pressure",
-                   field.id(), locks->id, poisson_ratio(*locks->material));
+                   field.id(), locks->id, MPMRestModuli(*locks->material).poisson_ratio());
 }
 
 /** In the total frame points stay at their positions in their cells, even where round-off decides

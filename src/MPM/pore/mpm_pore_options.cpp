@@ -421,7 +421,7 @@ void MPMPoreChecks::compare_soil(const MPMPoreSoil &soil, const Material &materi
   doubts.check(
       MPMDoubts::HEAVY_GRAINS, grains / water.density, who,
       fmt::format("grains have the density {:.6g}, the water {:.6g}", grains, water.density));
-  const double stiffness = compression_modulus(material);
+  const double stiffness = MPMRestModuli(material).compression;
   if (!(stiffness > 0.0) || soil.retention.can_dry()) return;
   doubts.check(MPMDoubts::SOFT_WATER, water.bulk / (soil.porosity * stiffness), who,
                fmt::format("the water has the bulk modulus {:.6g}, and the skeleton the stiffness "
