@@ -20,6 +20,7 @@
 #include "field/mpm_point_batches.h"
 #include "field/mpm_time_limit.h"
 #include "field/mpm_transfer_heat.h"
+#include "field/mpm_volume_drift.h"
 #include "material/batch_kernels.h"
 #include "transfer/kernels.h"
 #include "update.h"
@@ -32,16 +33,17 @@ using namespace MPM_NS;
 // Strain and stress of the points.
 
 void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPointMap::Run &run,
-                              int first, int n, const double *L, double dt, bool moves)
+                              int first, int n, const double *L, double dt)
 {
   // not through row pointers: one of them per batch is always a cache miss
   Batch &b = *field.batch;
   FixMPMMaterial *material = run.material;
   if (!material) return;    // nodes of elements
   double *F = r.F + 9 * (bigint) first, *tau = r.tau + 6 * (bigint) first;
+  field.drift->change_volumes(material, first, n, dt, F);
   double stretched[9 * BATCH];
   for (auto *physics : field.stretching) {
-    if (!moves || !physics->stretches(first, n)) continue;
+    if (!physics->stretches(first, n)) continue;
     if (L != stretched) std::copy_n(L, field.lattice.dim * field.lattice.dim * n, stretched);
     L = stretched;
     physics->stretch_gradients(field, first, n, dt, stretched);
@@ -59,7 +61,7 @@ void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   }
 
   double heat[BATCH];
-  const bool heats = field.heating && moves;
+  const bool heats = static_cast<bool>(field.heating);
   if (heats) field.heating->give(first, n, heat);
   material->update_batch(b, *field.batch_kernels, heats ? heat : nullptr);
   if (material->watching) material->watch_ranges(b, first);

@@ -16,10 +16,9 @@ namespace LAMMPS_NS {
 class MPMField;
 
 /** Updates strain and stress of n <= BATCH consecutive points of a run. L: their velocity
- *  gradients. moves: false for a strain apart from the motion of the step, to which heat of
- *  transfers and strains of other physics do not belong. */
+ *  gradients. */
 void update_stress(MPMField &, const MPM_NS::PointRows &, const MPMPointMap::Run &, int first,
-                   int n, const double *L, double dt, bool moves = true);
+                   int n, const double *L, double dt);
 /** Gives points without any stress, from first on, the pressure of their equation of state. */
 void give_initial_stress(MPMField &, int first = 0);
 

@@ -6,15 +6,18 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-/* Once in a number of steps, the volumes of points of liquids change by
+/* Once in a number of steps, it is found by how much the volumes of points of liquids change until
+ *  the next time,
  *
- *    d ln V_p = - rate g sum_i N_ip (f_i - 1)  +  2 rate g (p_p - sum_i N_ip <p>_i)/(rho c^2)
+ *    d ln V_p = - rate g sum_i N_ip (f_i - 1)  +  3 rate g (p_p - sum_i N_ip <p>_i)/K,
+ *    p = K (1 - J)
  *
- *  where g is the strain since the last time, and sums are over nodes inside. The first term ties
- *  the pressure to the places of the points: where they are too close together, it rises and drives
- *  them apart. What single points would gather of it, unseen by the nodes, the second one spreads
- *  over their neighbors. Both are proportional to the strain, as is the error, so that nothing
- *  happens at rest and no time scale comes in. Why: see DECISIONS.md. */
+ *  where g is the strain since the last time, K the stiffness at rest, and sums are over nodes
+ *  inside. The first term ties the pressure to the places of the points: where they are too close
+ *  together, it rises and drives them apart. What single points would gather of it, unseen by the
+ *  nodes, the second one spreads over their neighbors. Both are proportional to the strain, as is
+ *  the error, so that nothing happens at rest and no time scale comes in. Each step has its part of
+ *  the change, as all of it at once would make waves. Why: see DECISIONS.md. */
 
 #include "field/mpm_volume_drift.h"
 
@@ -26,31 +29,31 @@
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"
-#include "field/mpm_point_batches.h"
-#include "field/mpm_strain.h"
+#include "field/mpm_time_limit.h"
 #include "force.h"
-#include "material/batch_kernels.h"
 #include "material/material.h"
+#include "material/material_point.h"
 #include "update.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 // steps of the cycle from one look to the next, with and without a correction, and those of the
 // mean that a warning is about: waves and splashes pass in less
-static constexpr int CORRECT_EVERY = 20, LOOK_EVERY = 400, LASTING = 1000;
-static constexpr double FULL = 0.5;           // filling of the nodes around a point inside
+static constexpr int CORRECT_EVERY = 30, LOOK_EVERY = 400, LASTING = 1000;
+// filling of the nodes around a point inside; not half, which round-off would decide at the surface
+// of a regular array
+static constexpr double FULL = 0.47, HARDLY = 1.0e-3;
 static constexpr double MOST_DRIFT = 0.02;    // mean difference of fillings from one: a warning
 static constexpr double DEVIATIONS = 3.0;     // standard deviations of that mean
-// greatest share of a difference that is corrected at a time, and greatest difference: a larger
-// change of the pressure would make noise
-static constexpr double MOST_SHARE = 0.1, MOST_EXCESS = 0.3;
+// greatest share of an excess that is corrected at a time, and greatest excess: a larger change of
+// the pressure would make noise; that share of differences of the pressure must be less than one
+static constexpr double MOST_SHARE = 0.25, MOST_EXCESS = 0.3, SPREAD = 3.0;
 // regular arrays have an excess next to walls, as sums are not integrals; full effect on pressures
-static constexpr double LEAST_EXCESS = 0.0075, FULL_EXCESS = 0.1;
+static constexpr double LEAST_EXCESS = 0.0075, FULL_EXCESS = 0.02;
 
 /** Integral of the function of a node from minus infinity to t, in node spacings from the node. */
 static double integral(Shape shape, double t)
@@ -77,23 +80,24 @@ void MPMVolumeDrift::init()
 {
   corrects = field.options.drift > 0.0 && !field.options.averages_strain() &&
       std::any_of(field.materials.begin(), field.materials.end(), [this](const auto *material) {
-               return follows(material);
+               return material->volume_rate != nullptr;
              });
   warned = false;
   inside = {};
+  stiffness.clear();
+  if (!corrects) return;
+  const double scale = force->mvv2e * force->nktv2p;    // of density velocity^2, in pressure units
+  for (const auto *material : field.materials) {
+    if (!material->volume_rate) continue;
+    const double c = MaterialPoint(*material->material).wave_speed();
+    stiffness[material] = scale * material->material->density() * c * c;
+  }
 }
 
-/** The pressure of other materials depends on their history, too, which a change of volume would
- *  change for good: shocks in gases would be wrong by 5 to 10 % in density. */
-bool MPMVolumeDrift::follows(const FixMPMMaterial *material) const
-{
-  return material && material->material->is_barotropic();
-}
-
-/** Zero: where the lattice is not in space, or points share the room with others, there is nothing
- *  to compare. */
 int MPMVolumeDrift::looks_every() const
 {
+  // where the lattice is not in space, or points share the room with others, there is nothing to
+  // compare
   if (field.options.total || field.frame->mean_rate || field.shares_room) return 0;
   return corrects ? CORRECT_EVERY : LOOK_EVERY;
 }
@@ -105,6 +109,8 @@ double MPMVolumeDrift::part_along(int axis, int node) const
   if (lattice.periodic[axis]) return 1.0;
   const double low = (domain->boxlo[axis] - lattice.origin[axis]) / lattice.h,
                high = (domain->boxhi[axis] - lattice.origin[axis]) / lattice.h;
+  constexpr double REACH = 2.0;    // of the widest function
+  if (node >= low + REACH && node <= high - REACH) return 1.0;
   const auto plain = [&](int i) {
     return integral(field.options.shape, high - i) - integral(field.options.shape, low - i);
   };
@@ -234,19 +240,23 @@ void MPMVolumeDrift::find_inside()
 {
   auto &work = field.work;
   const int NREAL = field.pic.nreal;
-  each_point(field, [&](const MPMPointMap::Run &, int i) {
-    double *const q = &work.vectors[3 * (std::size_t) i];
-    const double *const tau = field.points->tau[i];
-    q[0] = q[0] != 0.0;
-    q[1] = -(tau[0] + tau[1] + tau[2]) / (3.0 * field.points->jacobian(i));
-    q[2] = 0.0;
-  });
+  for (const auto &run : field.map->runs) {
+    const double K = rates(run.material) ? stiffness[run.material] : 0.0;
+    for (int i = run.first; i < run.last; i++) {
+      double *const q = &work.vectors[3 * (std::size_t) i];
+      const double *const tau = field.points->tau[i];
+      const double J = field.points->jacobian(i);
+      q[0] = q[0] > HARDLY;
+      q[1] = K > 0.0 ? K * (1.0 - J) : -(tau[0] + tau[1] + tau[2]) / (3.0 * J);
+      q[2] = 0.0;
+    }
+  }
   sum_at_nodes();
   double mine[4] = {0.0}, all[4];
   for (std::size_t n = 0; n < fill.size(); n++) {
     double *const record = &work.nodes[NREAL * n];
     const double excess = fill[n] - 1.0;
-    const bool is_inside = record[3] > 0.0 && record[0] == 0.0;
+    const bool is_inside = record[3] > 0.0 && record[0] < HARDLY * record[3];
     if (is_inside && field.grid.owns((int64_t) n)) {
       mine[0] += 1.0;
       mine[1] += part[n];
@@ -289,6 +299,7 @@ void MPMVolumeDrift::note(int every)
 
 void MPMVolumeDrift::step()
 {
+  corrects = corrects && field.time_limit->bound;    // not in implicit steps
   const int every = looks_every();
   // also for the summary of a run that is not short
   const bool last =
@@ -300,55 +311,43 @@ void MPMVolumeDrift::step()
   mark_points_at_surfaces();
   find_inside();
   note(every);
-  if (now) correct();
+  if (now) find_rates();
 }
 
-void MPMVolumeDrift::correct()
+/** Null where nothing changes. */
+double *MPMVolumeDrift::rates(const FixMPMMaterial *material) const
+{
+  return corrects && material ? material->volume_rate : nullptr;
+}
+
+void MPMVolumeDrift::find_rates()
 {
   interpolate();
-  field.jacobians.forget();
+  const double duration = CORRECT_EVERY * field.step_dt();
   for (const auto &run : field.map->runs) {
-    if (!follows(run.material)) continue;
-    for (int i = run.first; i < run.last; i += BATCH)
-      correct(run, i, std::min(BATCH, run.last - i));
+    double *const rate = rates(run.material);
+    if (!rate) continue;
+    const double K = stiffness[run.material];
+    for (int i = run.first; i < run.last; i++) {
+      const double *const q = &field.work.vectors[3 * (std::size_t) i];
+      const double size = std::max(0.0, std::min(MOST_EXCESS, std::fabs(q[0])) - LEAST_EXCESS),
+                   share = std::min(MOST_SHARE, field.options.drift * change[i]),
+                   difference = 1.0 - field.points->jacobian(i) - q[1] / K,
+                   spread = SPREAD * std::min(1.0, size / FULL_EXCESS) * difference;
+      rate[i] = share * (spread - std::copysign(size, q[0])) / duration;
+    }
   }
 }
 
-/** The change of volume is a strain for the law, equal in all directions, at the pace of the time
- *  between looks. Viscous stress stays. */
-void MPMVolumeDrift::correct(const MPMPointMap::Run &run, int first, int n)
+void MPMVolumeDrift::change_volumes(const FixMPMMaterial *material, int first, int n, double dt,
+                                    double *F) const
 {
+  const double *const rate = rates(material);
+  if (!rate) return;
   const int dim = field.lattice.dim;
-  const auto &material = *run.material;
-  const double duration = CORRECT_EVERY * field.step_dt(),
-               scale = force->mvv2e * force->nktv2p;    // of density velocity^2, in pressure units
-  int list[BATCH];
-  double c[BATCH], L[9 * BATCH] = {0.0}, before[BATCH][6];
-  std::iota(list, list + n, first);
-  load_state(field, *field.batch, list, n, &material);
-  material.material->wave_speed(*field.batch, c);
-  for (int p = 0; p < n; p++) {
-    const std::size_t i = first + p;
-    const double *const q = &field.work.vectors[3 * i], *const tau = field.points->tau[i];
-    const double J = field.points->jacobian((int) i);
-    const double size = std::max(0.0, std::min(MOST_EXCESS, std::fabs(q[0])) - LEAST_EXCESS),
-                 excess = std::copysign(size, q[0]),
-                 share = std::min(MOST_SHARE, field.options.drift * change[i]);
-    double more = -share * excess;
-    // a gas may be far from the pressure around it, and its stiffness changes as much on the way
-    const double pressure = -(tau[0] + tau[1] + tau[2]) / (3.0 * J), difference = pressure - q[1],
-                 stiffness = scale * material.material->density() / J * c[p] * c[p],
-                 least = std::fabs(difference), part = std::min(1.0, size / FULL_EXCESS);
-    if (least > 0.0) more += 2.0 * share * part * difference / std::max(stiffness, least);
-    for (int d = 0; d < dim; d++) L[(dim * p + d) * dim + d] = more / (dim * duration);
-    std::copy_n(tau, 6, before[p]);
-  }
-  update_stress(field, field.rows(), run, first, n, L, duration, false);
-  for (int p = 0; p < n; p++) {
-    double *const tau = field.points->tau[first + p];
-    const double mean = (tau[0] + tau[1] + tau[2]) / 3.0,
-                 old = (before[p][0] + before[p][1] + before[p][2]) / 3.0;
-    for (int k = 0; k < 6; k++) tau[k] = before[p][k] + (k < 3 ? mean - old : 0.0);
+  for (int p = 0; p < n; p++, F += 9) {
+    const double factor = 1.0 + rate[first + p] * dt / dim;
+    for (int k = 0; k < 3 * dim; k++) F[k] *= factor;
   }
 }
 

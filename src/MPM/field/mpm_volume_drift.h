@@ -13,6 +13,7 @@
 #include "field/mpm_point_map.h"
 #include "pointers.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ class MPMVolumeDrift : protected Pointers {
   void init();
   /** Start of a step of the cycle, when the map of points is valid. Collective. */
   void step();
+  /** The part of a step of duration dt in the change of the volumes of n points from first on, of
+   *  which these are the deformation gradients [n][9], before the strain of the step. */
+  void change_volumes(const FixMPMMaterial *, int first, int n, double dt, double *F) const;
   /** A line for the summary of the run; empty if the field has no nodes inside of bodies. */
   std::string report() const;
 
@@ -55,10 +59,10 @@ class MPMVolumeDrift : protected Pointers {
   } inside;
   std::vector<double> fill;      // [node] filling
   std::vector<double> part;      // [node] share of its function that is in the box
-  std::vector<double> change;    // [n] strain since the last look; then change of ln V
+  std::vector<double> change;    // [n] strain since the last look
+  std::map<const FixMPMMaterial *, double> stiffness;    // at rest, of liquids [pressure]
 
-  bool follows(const FixMPMMaterial *) const;
-  int looks_every() const;
+  int looks_every() const;    // 0: never
   double part_along(int axis, int node) const;
   double part_in_box(int64_t node) const;
   void sum_at_nodes();
@@ -68,8 +72,8 @@ class MPMVolumeDrift : protected Pointers {
   void mark_points_at_surfaces();
   void find_inside();
   void note(int every);
-  void correct();
-  void correct(const MPMPointMap::Run &, int first, int n);
+  double *rates(const FixMPMMaterial *) const;
+  void find_rates();
 };
 
 }    // namespace LAMMPS_NS
