@@ -736,7 +736,7 @@ TEST(AtomStyle, ReplicateBetweenRuns)
   const std::string scene = space("lj", "p p p", "0 8 0 6 0 5") +
       "fix grid all mpm 1.0 transfer pic\nregion body block 1 4 1 4 1 3\ncreate_points 1 region "
       "body ppc 2\n"
-      "fix water all mpm/material density 1.0 eos tait 20.0 7\n"
+      "fix rubber all mpm/material density 1.0 neohookean 20.0 0.3\n"
       "velocity all ramp vx 0.1 0.5 y 1 4 units box\nvelocity all set NULL 0.1 0.3\ntimestep "
       "0.02\nrun 20\n";
   Scene once(scene + "run 20\n"), copies(scene + "replicate 2 1 2\nrun 20\n");

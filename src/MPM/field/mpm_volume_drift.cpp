@@ -9,7 +9,7 @@
 /* Once in a number of steps, it is found by how much the volumes of points of liquids change until
  *  the next time,
  *
- *    d ln V_p = - rate g sum_i N_ip (f_i - 1)  +  3 rate g (p_p - sum_i N_ip <p>_i)/K,
+ *    d ln V_p = - rate g sum_i N_ip (f_i - 1)  +  3.75 rate g (p_p - sum_i N_ip <p>_i)/K,
  *    p = K (1 - J)
  *
  *  where g is the strain since the last time, K the stiffness at rest, and sums are over nodes
@@ -44,14 +44,15 @@ using namespace MPM_NS;
 // steps of the cycle from one look to the next, with and without a correction, and those of the
 // mean that a warning is about: waves and splashes pass in less
 static constexpr int CORRECT_EVERY = 30, LOOK_EVERY = 400, LASTING = 1000;
-// filling of the nodes around a point inside; not half, which round-off would decide at the surface
-// of a regular array
-static constexpr double FULL = 0.47, HARDLY = 1.0e-3;
+// filling of the nodes around a point inside. Linear functions: of the nodes that a flat surface
+// reaches, the last one may be half full, and round-off must not decide; wider ones: at most .17
+static constexpr double FULL = 0.4, FULL_LINEAR = 0.53;
+static constexpr double HARDLY = 1.0e-3;
 static constexpr double MOST_DRIFT = 0.02;    // mean difference of fillings from one: a warning
 static constexpr double DEVIATIONS = 3.0;     // standard deviations of that mean
 // greatest share of an excess that is corrected at a time, and greatest excess: a larger change of
 // the pressure would make noise; that share of differences of the pressure must be less than one
-static constexpr double MOST_SHARE = 0.25, MOST_EXCESS = 0.3, SPREAD = 3.0;
+static constexpr double MOST_SHARE = 0.2, MOST_EXCESS = 0.3, SPREAD = 3.75;
 // regular arrays have an excess next to walls, as sums are not integrals; full effect on pressures
 static constexpr double LEAST_EXCESS = 0.0075, FULL_EXCESS = 0.02;
 
@@ -225,10 +226,12 @@ void MPMVolumeDrift::find_strain()
 void MPMVolumeDrift::mark_points_at_surfaces()
 {
   constexpr double LITTLE = 0.25;
+  const Shape shape = field.options.shape;
+  const double full = shape == QUADRATIC || shape == CUBIC ? FULL : FULL_LINEAR;
   auto &work = field.work;
   for (std::size_t n = 0; n < fill.size(); n++) {
     double *const record = &work.nodes[field.pic.nreal * n];
-    record[0] = fill[n] < FULL && part[n] > LITTLE;
+    record[0] = fill[n] < full && part[n] > LITTLE;
     record[1] = record[2] = 0.0;
   }
   interpolate();
