@@ -120,7 +120,7 @@ SERIAL_TEST(Water, LossIsTold)
 }
 
 // A disk of liquid is sheared in empty space.
-TEST(Shear, KeepsMomentum)
+SERIAL_TEST(Shear, KeepsMomentum)
 {
   Scene run(plane("lj", "p p", "0 40 0 40", 1, 0.5) +
             "fix grid all mpm 1.0\nregion disk cylinder z 20 20 6 INF INF\n"
