@@ -54,7 +54,7 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
       }
     });
   // the pressure of other materials depends on their history, too, which a change of volume would
-  // change for good: shocks in gases would be wrong by 5 to 10 % in density
+  // change for good: shocks in gases would be wrong by 3 to 10 % in density
   if (material->is_barotropic()) state.declare(volume_rate, "mpm/material:volume_rate");
   keep_arrays();
 

@@ -61,7 +61,7 @@ void LAMMPS_NS::update_stress(MPMField &field, const PointRows &r, const MPMPoin
   }
 
   double heat[BATCH];
-  const bool heats = static_cast<bool>(field.heating);
+  const bool heats = field.heating != nullptr;
   if (heats) field.heating->give(first, n, heat);
   material->update_batch(b, *field.batch_kernels, heats ? heat : nullptr);
   if (material->watching) material->watch_ranges(b, first);

@@ -83,7 +83,7 @@ void MPMVolumeDrift::init()
       std::any_of(field.materials.begin(), field.materials.end(), [this](const auto *material) {
                return material->volume_rate != nullptr;
              });
-  warned = false;
+  warned = cleared = false;
   inside = {};
   stiffness.clear();
   if (!corrects) return;
@@ -302,7 +302,8 @@ void MPMVolumeDrift::note(int every)
 
 void MPMVolumeDrift::step()
 {
-  corrects = corrects && field.time_limit->bound;    // not in implicit steps
+  corrects = corrects && looks_every() > 0 && field.time_limit->bound;    // not in implicit steps
+  if (!corrects && !cleared) clear_rates();
   const int every = looks_every();
   // also for the summary of a run that is not short
   const bool last =
@@ -315,6 +316,15 @@ void MPMVolumeDrift::step()
   find_inside();
   note(every);
   if (now) find_rates();
+}
+
+/** Without corrections, rates of a run before must not wait for the next run that has some. */
+void MPMVolumeDrift::clear_rates()
+{
+  cleared = true;
+  for (const auto &run : field.map->runs)
+    if (run.material && run.material->volume_rate)
+      std::fill(run.material->volume_rate + run.first, run.material->volume_rate + run.last, 0.0);
 }
 
 /** Null where nothing changes. */

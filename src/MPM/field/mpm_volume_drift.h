@@ -51,7 +51,7 @@ class MPMVolumeDrift : protected Pointers {
 
  private:
   MPMField &field;
-  bool corrects = false, warned = false;
+  bool corrects = false, warned = false, cleared = false;
   /** Nodes inside of bodies, of all ranks. */
   struct {
     double nodes = 0.0, mean = 0.0, rms = 0.0;    // mean filling, and rms difference from one
@@ -74,6 +74,7 @@ class MPMVolumeDrift : protected Pointers {
   void note(int every);
   double *rates(const FixMPMMaterial *) const;
   void find_rates();
+  void clear_rates();
 };
 
 }    // namespace LAMMPS_NS
