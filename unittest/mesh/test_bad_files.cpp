@@ -382,3 +382,28 @@ TEST_P(BadFilesInLammps, AreExplained)
   EXPECT_TRUE(contains(text, defect.error)) << "expected: " << defect.error << "\nfound: " << text;
   EXPECT_TRUE(contains(text, file.name)) << "which file: " << text;
 }
+
+// a device gives bytes without end
+TEST(BadFilesInLammps, DevicesAreNoFiles)
+{
+  for (const std::string &command :
+       {surface, elements, rows, std::string("fix m all mpm/material file FILE")}) {
+    const std::string text =
+        answer(space("lj", "f f f", "-3 3 -3 3 -3 3") + "fix grid all mpm 0.5\n" +
+               with(command, "FILE", "/dev/zero") + "\n");
+    EXPECT_TRUE(contains(text, "is no file|cannot open the mesh file")) << text;
+  }
+}
+
+TEST(BadFilesInLammps, ManyColumns)
+{
+  std::string names = "x,y,z", values = "0,0,0";
+  for (int k = 0; k < 100000; k++) {
+    names += ",c" + std::to_string(k);
+    values += ",1";
+  }
+  const ScratchFile file("a.csv", names + ",x\n" + values + ",1\n");
+  EXPECT_TRUE(contains(answer(space("lj", "f f f", "-3 3 -3 3 -3 3") + "fix grid all mpm 0.5\n" +
+                              with(rows, "FILE", file.name) + "\n"),
+                       "two columns have the name x"));
+}

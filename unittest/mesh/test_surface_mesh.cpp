@@ -394,6 +394,114 @@ TEST(RegionMesh, RefusesMistakes)
                   {"region r mpm/mesh " + flat.name + " 1.0 0 0 0", "without volume"}});
 }
 
+/** A plane z = slope x, two triangles over [0,8] x [0,8] that look up, or a ridge of four whose far
+ *  half falls. */
+static Soup hillside(double slope, bool ridge)
+{
+  Soup soup;
+  const auto strip = [&](double from, double to, double low, double high) {
+    const Point a = {from, 0.0, low}, b = {to, 0.0, high}, c = {to, 8.0, high},
+                d = {from, 8.0, low};
+    soup.push_back({a, b, c});
+    soup.push_back({a, c, d});
+  };
+  strip(0.0, ridge ? 4.0 : 8.0, 0.0, (ridge ? 4.0 : 8.0) * slope);
+  if (ridge) strip(4.0, 8.0, 4.0 * slope, 0.0);
+  return soup;
+}
+
+static MPM_NS::SurfaceOptions open_surface()
+{
+  MPM_NS::SurfaceOptions options;
+  options.open = true;
+  return options;
+}
+
+// Behind a plane, and beyond its rim, the side is that of the plane; behind a ridge, of both planes.
+SERIAL_TEST(OpenSurface, GoesOnBeyondItsRim)
+{
+  const double slope = 0.75;    // normal (-.6, 0, .8)
+  for (const bool ridge : {false, true}) {
+    const SurfaceMesh mesh(text_of(hillside(slope, ridge)), "hill", 1.0, {0.0, 0.0, 0.0},
+                           open_surface());
+    EXPECT_TRUE(mesh.open);
+    EXPECT_EQ(mesh.rim.size(), ridge ? 6u : 4u);
+    EXPECT_TRUE(std::isnan(mesh.volume));
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> any(-3.0, 11.0);
+    int over = 0;
+    for (int n = 0; n < 3000; n++) {
+      const Point x = {any(random), any(random), any(random)};
+      double exact = 0.8 * x[2] - 0.6 * x[0];
+      if (ridge) exact = std::max(exact, 0.8 * x[2] + 0.6 * (x[0] - 8.0));
+      EXPECT_EQ(mesh.inside(x), exact <= 0.0) << x[0] << " " << x[1] << " " << x[2];
+      Point closest;
+      const double d = mesh.distance(x, closest);
+      EXPECT_EQ(d > 0.0, exact > 0.0);
+      if (ridge || closest[0] < 1.0e-9 || closest[0] > 8.0 - 1.0e-9 || x[1] < 0.0 || x[1] > 8.0)
+        continue;
+      EXPECT_NEAR(d, exact, 1.0e-12);
+      over++;
+    }
+    EXPECT_TRUE(ridge || over > 500);
+  }
+}
+
+SERIAL_TEST(OpenSurface, RefusesTrianglesThatLookToDifferentSides)
+{
+  Soup soup = hillside(0.5, true);
+  EXPECT_EQ(message(text_of(soup), open_surface()), "");
+  EXPECT_THAT(message(text_of(soup)), AllOf(HasSubstr("not closed"), HasSubstr("surface open")));
+  std::swap(soup[1][0], soup[1][1]);
+  EXPECT_THAT(message(text_of(soup), open_surface()), HasSubstr("look to different sides"));
+  // a closed body is one, also where it may be open
+  const SurfaceMesh cube(text_of(box({0, 0, 0}, {1, 1, 1})), "cube", 1.0, {0.0, 0.0, 0.0},
+                         open_surface());
+  EXPECT_FALSE(cube.open);
+  EXPECT_NEAR(cube.volume, 1.0, 1.0e-12);
+}
+
+// A body slides on terrain as on a plane of LAMMPS: points behind it, force, and motion.
+TEST(OpenSurface, HoldsABodyLikeAPlane)
+{
+  const ScratchFile hill("hill.stl", text_of(hillside(0.5, false)));
+  const std::string input = space("lj", "f f f", "0 8 0 8 -2 10") + R"(
+fix grid all mpm 0.5
+region body block 1 3 3 5 1.6 3.1
+REGIONS
+region start intersect 2 body air
+create_points 1 region start ppc 2
+fix m all mpm/material density 1.0 neohookean 100.0 0.3
+fix w all mpm/boundary region ground separate friction 0.2
+fix g all gravity 1.0 vector 0 0 -1
+timestep 0.01
+run 200
+)";
+  const std::string file = "mpm/mesh " + hill.name + " 1.0 0 0 0 surface open";
+  Scene plane, mesh;
+  plane.commands(replaced(input, "REGIONS",
+                          "region ground plane 0 0 0 0.5 0 -1\nregion air plane 0 0 0 -0.5 0 1"));
+  mesh.commands(
+      replaced(input, "REGIONS", "region ground " + file + "\nregion air " + file + " side out"));
+  EXPECT_GT(plane.gather().size(), 200u);
+  EXPECT_LT(difference(plane.gather(), mesh.gather()), 1.0e-6);
+  for (const char *force : {"f_w[1]", "f_w[3]"})
+    EXPECT_NEAR(mesh.evaluate(force), plane.evaluate(force), 1.0e-6);
+  EXPECT_LT(plane.evaluate("f_w[3]"), -0.5);
+}
+
+TEST(OpenSurface, SaysThatItEndsInTheBox)
+{
+  const ScratchFile hill("hill.stl", text_of(hillside(0.5, false)));
+  const std::string file = "region r mpm/mesh " + hill.name + " 1.0 0 0 0 surface open\nrun 0\n",
+                    ends = "ends in the box, near";
+  EXPECT_EQ(times_said(space("lj", "f f f", "0 8 0 8 -2 10") + file, ends), 0);
+  EXPECT_EQ(times_said(space("lj", "f f f", "0 9 0 8 -2 10") + file, ends), 1);
+  expect_refused(space("lj", "f f f", "0 8 0 8 -2 10") + "region r mpm/mesh " + hill.name +
+                     " 1.0 0 0 0 surface open\nfix grid all mpm 0.5\n",
+                 {{"fix b all mpm/rigid r density 1.0 slip", "a wall and no body"}});
+}
+
 static MPM_NS::SurfaceOptions leaky()
 {
   MPM_NS::SurfaceOptions options;
@@ -673,7 +781,8 @@ TEST(RegionLeaky, RefusesMistakes)
   const ScratchFile file("cube.stl", text_of(box({0, 0, 0}, {1, 1, 1})));
   const std::string region = "region r mpm/mesh " + file.name + " 1.0 0 0 0 ";
   expect_refused(space_of_points,
-                 {{region + "surface open", "open"},
+                 {{region + "surface full", "full"},
+                  {region + "surface", "missing"},
                   {region + "turn 30 0 0 0", "axis"},
                   {region + "turn 30 0 0", "turn"},
                   {region + "side out surface leaky", "must come before the keyword side"},

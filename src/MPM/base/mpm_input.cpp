@@ -9,6 +9,7 @@
 #include "base/mpm_input.h"
 
 #include "law/plugin.h"
+#include "table/regular_file.h"
 
 #include "comm.h"
 #include "domain.h"
@@ -80,6 +81,7 @@ static std::string read_words(LAMMPS *lmp, const std::string &name, std::string 
     return fmt::format("cannot read file {}: it is not here, nor in a folder of the environment "
                        "variable LAMMPS_POTENTIALS, nor among the files of this package",
                        name);
+  if (is_no_file(path)) return fmt::format("cannot read {}, which is no file", path);
   const std::string units = utils::get_potential_units(path, "material");
   const std::string ours = lmp->update->unit_style;
   if (units.empty())

@@ -132,7 +132,7 @@ void FixMPMRigid::find_shape()
   double volume, lo[3], hi[3];
   constexpr int VOIGT[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   if (auto *region = dim == 3 ? dynamic_cast<RegMPMMesh *>(any) : nullptr) {
-    region->need_distance();
+    region->need_body();
     const SurfaceMesh *const mesh = contact.mesh = &region->surface_mesh();
     volume = mesh->volume;
     for (int d = 0; d < 3; d++) {
@@ -186,7 +186,7 @@ void FixMPMRigid::init()
                "copy of it",
                id, region_id);
   if (contact.mesh) {
-    region->need_distance();
+    region->need_body();
     contact.mesh = &region->surface_mesh();
     find_corners();
   } else if (!flows) {

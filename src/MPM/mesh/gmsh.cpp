@@ -7,6 +7,7 @@
 ------------------------------------------------------------------------- */
 
 #include "mesh/element.h"
+#include "table/regular_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -442,7 +443,7 @@ Mesh MPM_NS::read_gmsh(std::istream &stream, const std::string &name)
 Mesh MPM_NS::read_gmsh(const std::string &file)
 {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot open the mesh file " + file);
+  if (!in || is_no_file(file)) throw std::runtime_error("cannot open the mesh file " + file);
   return read_gmsh(in, file);
 }
 

@@ -8,6 +8,8 @@
 
 #include "mesh/mesh_file.h"
 
+#include "table/regular_file.h"
+
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -17,7 +19,7 @@ using namespace MPM_NS;
 Mesh MPM_NS::read_mesh(const std::string &file)
 {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot open the mesh file " + file);
+  if (!in || is_no_file(file)) throw std::runtime_error("cannot open the mesh file " + file);
   std::string line;
   std::getline(in, line);
   in.clear();

@@ -78,9 +78,14 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
   if (options.leaky)
     patch();
   else
-    close(name);
+    check_edges(name, options.open);
+  open = !rim.empty();
   integrate();
-  if (volume < 0.0) {    // turned inside out
+  if (open) {    // encloses nothing
+    volume = NAN;
+    center.fill(NAN);
+    std::fill_n(inertia, 6, NAN);
+  } else if (volume < 0.0) {    // turned inside out
     for (auto &t : triangles) std::swap(t.corner[1], t.corner[2]);
     integrate();
   }
@@ -97,7 +102,7 @@ SurfaceMesh::SurfaceMesh(const std::string &bytes, const std::string &name, doub
     around.resize(corners.size());
     for (int i = 0; i < (int) triangles.size(); i++)
       for (const int c : triangles[i].corner) around[c].push_back(i);
-    check_shells(name);
+    if (!open) check_shells(name);
   }
   make_coarse();
 }
@@ -176,28 +181,41 @@ void SurfaceMesh::weld(const std::vector<Point> &soup, const std::string &name)
   }
 }
 
-/** Each edge must belong to two triangles that run along it in opposite directions. */
-void SurfaceMesh::close(const std::string &name)
+/** Each edge must belong to two triangles that run along it in opposite directions, or, at the rim
+ *  of an open surface, to one. */
+void SurfaceMesh::check_edges(const std::string &name, bool may_be_open)
 {
   std::map<std::pair<int, int>, int> edges;
   for (const auto &t : triangles)
     for (int c = 0; c < 3; c++) edges[{t.corner[c], t.corner[(c + 1) % 3]}]++;
-  std::size_t open = 0;
+  std::size_t wrong = 0;
   Point example = {0.0, 0.0, 0.0};
-  for (const auto &edge : edges) {
-    const auto back = edges.find({edge.first.second, edge.first.first});
-    if (edge.second == 1 && back != edges.end() && back->second == 1) continue;
-    open++;
-    example = 0.5 * (corners[edge.first.first] + corners[edge.first.second]);
+  for (const auto &[ends, times] : edges) {
+    const auto back = edges.find({ends.second, ends.first});
+    const Point middle = 0.5 * (corners[ends.first] + corners[ends.second]);
+    if (times == 1 && back != edges.end() && back->second == 1) continue;
+    if (times == 1 && back == edges.end() && may_be_open) {
+      rim.push_back(middle);
+      continue;
+    }
+    wrong++;
+    example = middle;
   }
-  if (!open) return;
+  if (!wrong) return;
+  const std::string which = std::to_string(wrong) + " of " + std::to_string(edges.size()) +
+      " edges, one of them at " + describe(example) + "; ";
+  if (may_be_open)
+    throw std::runtime_error(
+        "The surface of file " + name +
+        " has neighbors that look to different sides, or edges of more than two triangles: " +
+        which +
+        "turn the triangles to one side where the mesh is made, or, of a region that is filled "
+        "with points and is no wall, fill it as it is (surface leaky)");
   throw std::runtime_error(
       "The surface of file " + name +
-      " is not closed, or its triangles do not all look outward: " + std::to_string(open) + " of " +
-      std::to_string(edges.size()) + " edges, one of them at " + describe(example) +
-      "; close the mesh, an open terrain by sides and a bottom, or, of a region that is filled "
-      "with "
-      "points and is no wall, fill it as it is (surface leaky)");
+      " is not closed, or its triangles do not all look outward: " + which +
+      "close the mesh, or use it as terrain that has matter behind it (surface open), or, of a "
+      "region that is filled with points and is no wall, fill it as it is (surface leaky)");
 }
 
 /** Volume, center, inertia: sums over the tetrahedra of the triangles and one point. */
@@ -262,7 +280,12 @@ void SurfaceMesh::find_parts()
   for (int i = 0; i < (int) triangles.size(); i++)
     for (int c = 0; c < 3; c++) {
       auto &t = triangles[i];
-      const int j = edges.at({t.corner[(c + 1) % 3], t.corner[c]});
+      const auto across = edges.find({t.corner[(c + 1) % 3], t.corner[c]});
+      if (across == edges.end()) {    // the rim of an open surface
+        t.edge_normal[c] = t.normal;
+        continue;
+      }
+      const int j = across->second;
       t.edge_normal[c] = t.normal + triangles[j].normal;
       if (dot(t.normal, triangles[j].normal) > sharp) parts.join(i, j);
       shells.join(i, j);
@@ -658,8 +681,8 @@ double SurfaceMesh::bound(const Point &x) const
 {
   Point c;
   const int index = coarse_cell(x, c);
-  // outside of the grid: not closer than the box of the body
-  if (index < 0) return std::sqrt(square_of_distance(x, lo, hi));
+  // outside of the grid: not closer than the box of the body; an open surface has both sides there
+  if (index < 0) return open ? 0.0 : std::sqrt(square_of_distance(x, lo, hi));
   // single precision in the grid
   const double known = std::abs((double) coarse[index]) * (1.0 - 1.0e-6) - norm(x - c);
   if (known <= 0.0) return 0.0;

@@ -9,7 +9,8 @@
 #ifndef MPM_MESH_SURFACE_MESH_H
 #define MPM_MESH_SURFACE_MESH_H
 
-// Closed surfaces of triangles: signed distance, volume, inertia. Nothing here knows about LAMMPS.
+// Surfaces of triangles, closed or open: signed distance, volume, inertia. Nothing here knows about
+// LAMMPS.
 
 #include "mesh/surface_holes.h"
 
@@ -28,6 +29,10 @@ struct SurfaceOptions {
    *  intersect: see patch_surface(). The inside is where the winding number is above one half. Only
    *  inside() and the properties of the surface as a whole are available then. */
   bool leaky = false;
+  /** Accept a surface that has a rim, as of terrain: inside is what is behind its triangles, and
+   *  beyond the rim, what is behind the planes of the triangles there. Volume, center, and inertia
+   *  are not available then. */
+  bool open = false;
   double turn[3][3] = {
       {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};    ///< rotation applied to the positions in the file
 };
@@ -46,7 +51,7 @@ class SurfaceMesh {
   /** Reads a surface from the bytes of a file, see read_surface(). Positions are turned, multiplied
    *  by scale, and moved by shift. Corners closer than 1e-6 of the size of the body are merged.
    *  Throws std::runtime_error, with name in the message, if the file is invalid, if the surface is
-   *  not closed, or if its closed parts have no volume, intersect, or face the wrong way (inward,
+   *  not closed (with open: if neighbors look to different sides), or if its closed parts have no volume, intersect, or face the wrong way (inward,
    *  except for walls of cavities). A surface that is inside out as a whole is turned. */
   SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift,
               const SurfaceOptions &options = SurfaceOptions());
@@ -87,12 +92,14 @@ class SurfaceMesh {
   bool inside(const Point &x) const;
 
   Point lo, hi;         ///< box around the body
+  bool open = false;    ///< Has the surface a rim? Then the next three are not a number
   double volume;        ///< volume of the body
   Point center;         ///< centroid of the volume
   double inertia[6];    ///< moments of inertia about the center for unit density: xx yy zz xy xz yz
   /** Number of parts between sharp edges, where normals are more than 45 degrees apart */
   int nparts;
   std::size_t size() const { return triangles.size(); }
+  std::vector<Point> rim;    ///< centers of the edges at the rim of an open surface
   /** Corners of all triangles, including patches. */
   std::vector<std::array<Point, 3>> soup() const;
   SurfaceHoles holes;    ///< repairs of a leaky surface
@@ -131,7 +138,7 @@ class SurfaceMesh {
   double near;    // points closer than this are merged
 
   void weld(const std::vector<Point> &soup, const std::string &name);
-  void close(const std::string &name);
+  void check_edges(const std::string &name, bool may_be_open);
   void patch();
   void find_winding(const std::string &name);
   void integrate();

@@ -10,12 +10,15 @@
 
 #include "table/table.h"
 
+#include "table/regular_file.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <set>
 #include <stdexcept>
 
 using namespace MPM_NS;
@@ -97,11 +100,10 @@ class Rows {
  public:
   Rows(Table &table, const Lines &lines) : table(table), lines(lines)
   {
-    const auto &names = table.names;
-    for (std::size_t k = 0; k < names.size(); k++) {
-      if (names[k].empty()) lines.fail("column " + std::to_string(k + 1) + " has no name");
-      if (std::find(names.begin(), names.begin() + k, names[k]) != names.begin() + k)
-        lines.fail("two columns have the name " + names[k]);
+    std::set<std::string> seen;
+    for (const auto &column : table.names) {
+      if (column.empty()) lines.fail("column " + std::to_string(seen.size() + 1) + " has no name");
+      if (!seen.insert(column).second) lines.fail("two columns have the name " + column);
     }
   }
 
@@ -232,6 +234,7 @@ static Table read_xyz(const std::string &text, const std::string &columns, const
 
 Table MPM_NS::read_table(const std::string &file, const std::string &columns)
 {
+  if (is_no_file(file)) throw std::runtime_error(file + ": is no file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error(file + ": cannot be read");
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

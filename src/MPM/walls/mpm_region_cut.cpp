@@ -48,7 +48,8 @@ MPMRegionCut::MPMRegionCut(LAMMPS *lmp, Region *region, const double *origin, co
   std::copy_n(origin, 3, this->origin);
   std::copy_n(spacing, 3, this->spacing);
   const auto *mesh = dynamic_cast<RegMPMMesh *>(region);
-  if (!mesh || domain->dimension == 2 || region->dynamic_check() || mesh->surface_mesh().overlaps)
+  if (!mesh || domain->dimension == 2 || region->dynamic_check() || mesh->surface_mesh().overlaps ||
+      mesh->surface_mesh().open)
     return;
   CellVolumes::Range ranges[3];
   for (int d = 0; d < 3; d++) ranges[d] = {first[d], last[d]};

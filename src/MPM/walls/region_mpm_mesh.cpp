@@ -16,6 +16,7 @@
 #include "math_const.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
+#include "table/regular_file.h"
 #include "utils.h"
 
 #include <algorithm>
@@ -35,9 +36,10 @@ Options MPMRegionMeshOptions::declare()
   using namespace option;
   Options o("region mpm/mesh");
   o.add("surface",
-        {word(leaky,
-              {{"closed", false, "each edge belongs to two triangles with the same orientation"},
-               {"leaky", true, "fill holes: the inside is what the surface winds around"}})});
+        {word(surface,
+              {{"closed", CLOSED, "each edge belongs to two triangles with the same orientation"},
+               {"open", OPEN, "may have a rim, as of terrain: the inside is behind the triangles"},
+               {"leaky", LEAKY, "fill holes: the inside is what the surface winds around"}})});
   o.add("turn",
         {number(angle, "angle", ANY_NUMBER, "", "rotation of the file about its origin (degrees)"),
          numbers(axis, 3, "Rx Ry Rz", ANY_NUMBER, "", "axis of this rotation")})
@@ -54,12 +56,15 @@ static std::string read_bytes(LAMMPS *lmp, const char *file)
 {
   std::string bytes, problem;
   if (lmp->comm->me == 0) {
-    FILE *fp = fopen(file, "rb");
+    FILE *const fp = is_no_file(file) ? nullptr : fopen(file, "rb");
     if (fp) {
       char buffer[65536];
       for (std::size_t n; (n = fread(buffer, 1, sizeof(buffer), fp)) > 0;) bytes.append(buffer, n);
     }
-    if (!fp || ferror(fp)) problem = utils::getsyserror();
+    if (is_no_file(file))
+      problem = "it is no file";
+    else if (!fp || ferror(fp))
+      problem = utils::getsyserror();
     if (fp) fclose(fp);
   }
   broadcast(problem, lmp->world);
@@ -80,7 +85,9 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
       if (strcmp(word, keyword) == 0) return true;
     return false;
   };
-  while (own < narg && !is_of_all(arg[own])) own++;
+  // the value of keyword surface can be open, which is a keyword of all regions, too
+  while (own < narg && !is_of_all(arg[own])) own += strcmp(arg[own], "surface") == 0 ? 2 : 1;
+  own = std::min(own, narg);
   MPMRegionMeshOptions given;
   Options keywords = given.declare();
   read_options(lmp, keywords, own, arg, 7);
@@ -97,7 +104,8 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   for (int d = 0; d < 3; d++) shift[d] = unit[d] * utils::numeric(FLERR, arg[4 + d], false, lmp);
 
   SurfaceOptions how;
-  how.leaky = leaky = given.leaky;
+  how.leaky = leaky = given.surface == given.LEAKY;
+  how.open = given.surface == given.OPEN;
   if (keywords.given("turn")) {
     double axis[3] = {given.axis[0], given.axis[1], given.axis[2]}, quat[4];
     MathExtra::norm3(axis);
@@ -111,7 +119,7 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
     error->all(FLERR, 2, std::string(problem.what()));
   }
 
-  if (interior && !dynamic) {
+  if (interior && !dynamic && !mesh->open) {
     bboxflag = 1;
     extent_xlo = mesh->lo[0];
     extent_xhi = mesh->hi[0];
@@ -124,7 +132,9 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
 
   cmax = tmax = std::min(mesh->nparts, MAX_TOUCHES);
   contact = new Contact[cmax];
-  if (comm->me == 0)
+  if (comm->me == 0 && mesh->open)
+    utils::logmesg(lmp, "Region {}: {} triangles, open: it is behind them\n", id, mesh->size());
+  else if (comm->me == 0)
     utils::logmesg(lmp, "Region {}: {} triangles, volume {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id,
                    mesh->size(), mesh->volume, mesh->center[0], mesh->center[1], mesh->center[2]);
   if (leaky && comm->me == 0) report(arg[2]);
@@ -165,6 +175,38 @@ void RegMPMMesh::need_distance() const
                "Region {} has surface leaky, so that only what is inside of it is known and it "
                "cannot be a wall or a rigid body: repair its mesh and use surface closed",
                id);
+}
+
+void RegMPMMesh::need_body() const
+{
+  need_distance();
+  if (mesh->open)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Region {} has an open surface, which is a wall and no body: close its mesh", id);
+}
+
+/** Beyond its rim, an open surface goes on as planes, which a user may not have meant. */
+void RegMPMMesh::init()
+{
+  Region::init();
+  if (!mesh->open || warned || dynamic || comm->me != 0) return;
+  const double *const lo = domain->boxlo, *const hi = domain->boxhi;
+  for (const auto &x : mesh->rim) {
+    bool in_box = true;
+    for (int d = 0; d < domain->dimension; d++) {
+      const double margin = 1.0e-3 * (hi[d] - lo[d]);
+      in_box = in_box && x[d] > lo[d] + margin && x[d] < hi[d] - margin;
+    }
+    if (!in_box) continue;
+    warned = true;
+    error->warning(
+        FLERR,
+        "The open surface of region {} ends in the box, near {:.6g} {:.6g} {:.6g}: beyond "
+        "its rim it goes on as the planes of the triangles there; make it as wide as the "
+        "box",
+        id, x[0], x[1], x[2]);
+    return;
+  }
 }
 
 RegMPMMesh::~RegMPMMesh()

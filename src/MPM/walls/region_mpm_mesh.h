@@ -31,17 +31,19 @@ namespace LAMMPS_NS {
 
 /** Keywords of region mpm/mesh, besides those of all regions. */
 struct MPMRegionMeshOptions {
-  bool leaky = false;
+  enum { CLOSED, OPEN, LEAKY };
+  int surface = CLOSED;
   double angle = 0.0, axis[3] = {0.0, 0.0, 0.0};
 
   MPM_NS::Options declare();
 };
 
-/** The body inside of a surface of triangles from an STL or OBJ file. */
+/** The body inside of, or behind, a surface of triangles from an STL or OBJ file. */
 class RegMPMMesh : public Region {
  public:
   RegMPMMesh(class LAMMPS *, int, char **);
   ~RegMPMMesh() override;
+  void init() override;
   int inside(double, double, double) override;
   int surface_interior(double *x, double cutoff) override { return touch(x, cutoff, -1.0); }
   int surface_exterior(double *x, double cutoff) override { return touch(x, cutoff, 1.0); }
@@ -51,6 +53,9 @@ class RegMPMMesh : public Region {
 
   /** Stops with an error if the surface is leaky, because only inside() is known then. */
   void need_distance() const;
+
+  /** Stops with an error if the surface is open, because there is no body then. */
+  void need_body() const;
 
   /** Signed distance of x from the present surface of the region, negative in the region; the
    *  cutoff or minus the cutoff if it is greater. along_z: distance along z of the closest point
@@ -72,6 +77,7 @@ class RegMPMMesh : public Region {
   using Cells = std::unordered_map<uint64_t, Linear>;    // keys: see distance_by_cells()
   std::unique_ptr<MPM_NS::SurfaceMesh> mesh;
   bool leaky = false;
+  bool warned = false;     // that it ends in the box
   bool placing = false;    // inside() only stores its argument, in the coordinates of the mesh
   double place[3];
   int last_closest = -1;            // index of a triangle, see SurfaceMesh::distance_within()
