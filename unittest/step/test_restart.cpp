@@ -11,6 +11,9 @@
 
 #include "neighbor.h"
 
+#include <cmath>
+#include <cstring>
+
 using namespace MPM_TEST;
 
 static const std::string head = space("lj", "p p f", "0 8 0 8 0 8", 2);
@@ -265,4 +268,45 @@ TEST(RestartState, TimeStepIsThatWithoutTheFile)
   Scene early(head + "fix grid all mpm 1.0\n" + points + fixes("") + start + "write_restart " +
               file.name + " noinit\nrun 1\nunfix m2\n");
   EXPECT_EQ(early.error("write_restart " + file.name + " noinit\n"), "");
+}
+
+// bytes that have changed on a disk are seen, in each state of a fix, and in what belongs to a point
+SERIAL_TEST(RestartFile, DamageIsSeen)
+{
+  const ScratchFile file("whole.bin");
+  const std::string input = head + "fix grid all mpm 1.0\n" + points + fixes("") + start,
+                    with = "\nneighbor 0.3 bin\n" + fixes("") + "run 0\n";
+  Scene whole(input + "run 20\nwrite_restart " + file.name + "\n");
+  const std::string bytes = file_text(file.name);
+  const auto number = [&](std::size_t at) {
+    double value;
+    memcpy(&value, bytes.data() + at, sizeof(value));
+    return value;
+  };
+  std::vector<std::size_t> places;    // of bytes that change
+  for (std::size_t at = 0; at + 24 < bytes.size(); at++) {
+    const double size = number(at);    // a state begins with its size, twice
+    if (size >= 8.0 && size < 1.0e4 && size == std::floor(size) && number(at + 8) == -size)
+      places.insert(places.end(), {at, at + 10, at + 24 + (std::size_t) size / 2});
+  }
+  EXPECT_EQ(places.size(), 5u * 3u);    // mpm, two materials, boundary, dt
+  // the velocity of a point comes before its deformation, its stress, and its history
+  const auto atoms = whole.gather();
+  const auto found = bytes.find(std::string((const char *) atoms[5].v, sizeof(atoms[5].v)));
+  ASSERT_NE(found, std::string::npos);
+  for (const int real : {0, 2, 8, 12, 18}) places.push_back(found + 8 * real + 3);
+
+  for (const auto place : places) {
+    std::string changed = bytes;
+    changed[place] ^= 0x10;
+    const ScratchFile damaged("damaged.bin", changed);
+    Scene again;
+    EXPECT_THAT(again.error("read_restart " + damaged.name + with),
+                ::testing::HasSubstr("is not what was written"))
+        << place << " of " << bytes.size();
+  }
+  // image flags that read_restart changes are no damage
+  Scene again;
+  EXPECT_EQ(again.error("read_restart " + file.name + " remap" + with), "");
+  EXPECT_TRUE(identical(whole.gather(), again.gather()));
 }

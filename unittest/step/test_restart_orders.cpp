@@ -234,21 +234,6 @@ TEST(RestartOrders, OtherTimeStepIsSetAtOnce)
   }
 }
 
-// files of older versions do not have the options
-TEST(RestartOrders, TimeStepOfAnOlderFileGoesOn)
-{
-  for (const bool changed : {false, true}) {
-    Scene run(head + fixes[0] + points + replaced(all_fixes(), fixes[0], "") + "run 0\n");
-    const double limit = run.lmp->update->dt, dt = 0.5 * limit;
-    double state[6] = {dt, changed ? 1.1 * limit : limit, 7.0, 1.0e300, 0.0, dt};
-    run.commands(strprintf("timestep %.17g\n", dt));
-    run.fix("step")->restart((char *) state);
-    run.commands("run 0\n");
-    EXPECT_EQ(run.lmp->update->dt, changed ? limit : dt);
-    EXPECT_EQ(run.fix("step")->compute_vector(2), changed ? 8.0 : 7.0);
-  }
-}
-
 // forces from outside are forces
 TEST(RestartOrders, ForcesOfADriverAreMissed)
 {

@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "atom_vec_hybrid.h"
 #include "base/mpm_points.h"
+#include "base/mpm_state.h"
 #include "comm.h"
 #include "error.h"
 #include "math_const.h"
@@ -180,6 +181,44 @@ int AtomVecMPM::unpack_exchange_bonus(int i, double *buf)
   std::copy_n(buf, 9, points->F[i]);
   std::copy_n(buf + 9, 6, points->tau[i]);
   return MPMPoints::size;
+}
+
+// Each atom has a checksum behind what LAMMPS and the fixes write of it. Not in a hybrid style, which
+// writes atoms itself.
+
+/** Of all but the length and the image flags, which keyword remap of read_restart changes first. */
+static double checksum_of_record(const double *buf, int n)
+{
+  constexpr int IMAGE = 7;
+  return checksum(buf + 1, (IMAGE - 1) * sizeof(double)) -
+      checksum(buf + IMAGE + 1, (n - IMAGE - 1) * sizeof(double));
+}
+
+int AtomVecMPM::size_restart()
+{
+  return AtomVec::size_restart() + atom->nlocal;
+}
+
+int AtomVecMPM::pack_restart(int i, double *buf)
+{
+  const int n = AtomVec::pack_restart(i, buf);
+  buf[n] = checksum_of_record(buf, n);
+  buf[0] = n + 1;
+  return n + 1;
+}
+
+int AtomVecMPM::unpack_restart(double *buf)
+{
+  const int n = (int) buf[0] - 1;
+  if (n < 11 || buf[n] != checksum_of_record(buf, n))
+    error->one(FLERR, Error::NOLASTLINE,
+               "The atom with ID {} in the restart file is not what was written: the file was "
+               "damaged, or is of another version of this package; take another file",
+               (tagint) ubuf(buf[4]).i);
+  buf[0] = n;
+  AtomVec::unpack_restart(buf);
+  buf[0] = n + 1;
+  return n + 1;
 }
 
 int AtomVecMPM::size_restart_bonus()

@@ -48,6 +48,9 @@ class AtomVecMPM : public AtomVec {
   int pack_exchange_bonus(int, double *) override;
   int unpack_exchange_bonus(int, double *) override;
   int size_restart_bonus() override;
+  int size_restart() override;
+  int pack_restart(int, double *) override;
+  int unpack_restart(double *) override;
   int pack_restart_bonus(int i, double *buf) override { return pack_exchange_bonus(i, buf); }
   int unpack_restart_bonus(int i, double *buf) override { return unpack_exchange_bonus(i, buf); }
   double memory_usage_bonus() override;

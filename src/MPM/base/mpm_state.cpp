@@ -10,9 +10,12 @@
 
 #include "atom.h"
 #include "error.h"
+#include "lammps.h"
 #include "memory.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 using namespace LAMMPS_NS;
@@ -171,8 +174,46 @@ void LAMMPS_NS::write_totals(FILE *fp, MPI_Comm world, std::vector<double> &tota
   int me;
   MPI_Comm_rank(world, &me);
   if (me) return;
-  const int size = (int) ((totals.size() + same.size()) * sizeof(double));
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(totals.data(), sizeof(double), totals.size(), fp);
-  fwrite(same.data(), sizeof(double), same.size(), fp);
+  std::vector<double> all = totals;
+  all.insert(all.end(), same.begin(), same.end());
+  write_state(fp, all.data(), all.size() * sizeof(double));
+}
+
+double LAMMPS_NS::checksum(const void *bytes, std::size_t size)
+{
+  constexpr int BITS = 53;    // of an integer in a real
+  uint64_t sum = 14695981039346656037ULL;
+  for (std::size_t i = 0; i < size; i++)
+    sum = (sum ^ ((const unsigned char *) bytes)[i]) * 1099511628211ULL;
+  return (double) (sum >> (64 - BITS) ^ (sum & 0x7ff));
+}
+
+namespace {
+/** Before a state: its size twice, so that a damaged one is seen before it is used. */
+struct StateHeader {
+  double size, minus_size, checksum;
+};
+}    // namespace
+
+void LAMMPS_NS::write_state(FILE *fp, const void *state, std::size_t size)
+{
+  const StateHeader header = {(double) size, -(double) size, checksum(state, size)};
+  const int all = (int) (sizeof(header) + size);
+  fwrite(&all, sizeof(int), 1, fp);
+  fwrite(&header, sizeof(header), 1, fp);
+  fwrite(state, 1, size, fp);
+}
+
+char *LAMMPS_NS::read_state(LAMMPS *lmp, const std::string &id, char *buf)
+{
+  StateHeader header;
+  memcpy(&header, buf, sizeof(header));
+  char *const state = buf + sizeof(header);
+  if (!(header.size >= 0.0) || header.minus_size != -header.size ||
+      header.checksum != checksum(state, (std::size_t) header.size))
+    lmp->error->all(FLERR, Error::NOLASTLINE,
+                    "The state of fix {} in the restart file is not what was written: the file was "
+                    "damaged, or is of another version of this package; take another file",
+                    id);
+  return state;
 }

@@ -107,8 +107,15 @@ class FixMPMState : public Fix {
  *  contain these sums, and the run that writes such a file continues with them, so that both have
  *  the same digits. */
 void keep_totals(MPI_Comm, double *values, int n);
-/** Writes these sums as Fix::restart() reads them, followed by values that are the same on all
- *  processes. */
+/** Checksum of bytes, an integer that a real can hold (FNV-1a). It shows if a restart file has been
+ *  damaged. */
+double checksum(const void *bytes, std::size_t size);
+/** Writes the state of a fix to a restart file, with its checksum. For process 0. */
+void write_state(FILE *, const void *state, std::size_t size);
+/** The state in what Fix::restart() gets, as write_state() has written it; stops with an error if it
+ *  has changed. id: of the fix. */
+char *read_state(class LAMMPS *, const std::string &id, char *buf);
+/** Writes these sums as a state, followed by values that are the same on all processes. */
 void write_totals(FILE *, MPI_Comm, std::vector<double> &totals,
                   const std::vector<double> &same = {});
 

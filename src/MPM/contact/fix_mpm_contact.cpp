@@ -347,31 +347,29 @@ void FixMPMContact::act(double dt, Stage stage)
 
 void FixMPMContact::write_restart(FILE *fp)
 {
-  std::vector<double> total(1, -size_array_rows);
+  std::vector<double> total(1, size_array_rows);
   for (int p = 0; p < size_array_rows; p++) {
     keep_totals(world, &report.entries[p].work, 1);
     total.push_back(report.entries[p].work);
   }
   if (comm->me) return;
   const std::string text = utils::join_words(names, " ");
-  const int numbers = (int) (total.size() * sizeof(double)), size = numbers + (int) text.size() + 1;
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(total.data(), 1, numbers, fp);
-  fwrite(text.c_str(), 1, text.size() + 1, fp);
+  const std::string state =
+      std::string((const char *) total.data(), total.size() * sizeof(double)) + text;
+  write_state(fp, state.c_str(), state.size() + 1);
 }
 
-/** Rank 0 goes on with the totals. Files of older versions have the number of pairs in place of
- *  minus this number, and no names of the fields behind the work. */
+/** Rank 0 goes on with the totals. */
 void FixMPMContact::restart(char *buf)
 {
-  const auto *const from = (const double *) buf;
-  if (std::abs((int) from[0]) != size_array_rows)
+  const auto *const from = (const double *) read_state(lmp, id, buf);
+  if ((int) from[0] != size_array_rows)
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/contact {} had another number of fields when the restart file was written: "
                "name as many, or give the fix another ID to begin anew",
                id);
   const std::string ours = utils::join_words(names, " "),
-                    theirs = from[0] < 0.0 ? (const char *) (from + 1 + size_array_rows) : ours;
+                    theirs = (const char *) (from + 1 + size_array_rows);
   if (theirs != ours)
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/contact {} was between {} when the restart file was written, not {}: name "

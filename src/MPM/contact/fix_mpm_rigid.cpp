@@ -11,6 +11,7 @@
 #include "base/mpm_find_fixes.h"
 #include "base/mpm_image.h"
 #include "base/mpm_options.h"
+#include "base/mpm_state.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
@@ -464,12 +465,10 @@ void FixMPMRigid::write_restart(FILE *fp)
 {
   if (comm->me) return;
   const MPMRigidMotion &motion = *this;
-  const int size = sizeof(motion);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&motion, size, 1, fp);
+  write_state(fp, &motion, sizeof(motion));
 }
 
 void FixMPMRigid::restart(char *buf)
 {
-  memcpy(static_cast<MPMRigidMotion *>(this), buf, sizeof(MPMRigidMotion));
+  memcpy(static_cast<MPMRigidMotion *>(this), read_state(lmp, id, buf), sizeof(MPMRigidMotion));
 }

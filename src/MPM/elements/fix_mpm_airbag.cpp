@@ -9,6 +9,7 @@
 #include "elements/fix_mpm_airbag.h"
 
 #include "base/mpm_options.h"
+#include "base/mpm_state.h"
 #include "comm.h"
 #include "elements/fix_mpm_elements.h"
 #include "error.h"
@@ -240,15 +241,13 @@ void FixMPMAirbag::write_restart(FILE *fp)
   if (comm->me) return;
   const double list[] = {
       filled ? 1.0 : 0.0, open ? 1.0 : 0.0, gas.mass, gas.volume, gas.temperature, in, out};
-  const int size = sizeof(list);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list, sizeof(list), 1, fp);
+  write_state(fp, list, sizeof(list));
 }
 
 void FixMPMAirbag::restart(char *buf)
 {
   double list[7];
-  memcpy(list, buf, sizeof(list));
+  memcpy(list, read_state(lmp, id, buf), sizeof(list));
   filled = list[0] != 0.0;
   open = list[1] != 0.0;
   gas.mass = list[2];

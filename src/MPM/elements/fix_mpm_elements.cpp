@@ -436,15 +436,13 @@ void FixMPMElements::write_restart(FILE *fp)
   keep_totals(world, &spent, 1);
   if (comm->me) return;
   const double list[] = {internal->shortest, surface->work, spent};
-  const int size = sizeof(list);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list, sizeof(list), 1, fp);
+  write_state(fp, list, sizeof(list));
 }
 
 void FixMPMElements::restart(char *buf)
 {
   double list[3];
-  memcpy(list, buf, sizeof(list));
+  memcpy(list, read_state(lmp, id, buf), sizeof(list));
   internal->shortest = list[0];
   surface->work = list[1];
   spent = comm->me == 0 ? list[2] : 0.0;

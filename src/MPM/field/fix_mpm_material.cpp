@@ -250,16 +250,15 @@ void FixMPMMaterial::write_restart(FILE *fp)
   list[2 + NWORK] = stress_work;
   if (comm->me) return;
   const std::string text = names();
-  const int size = (int) (sizeof(list) + text.size() + 1);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list, 1, sizeof(list), fp);
-  fwrite(text.c_str(), 1, text.size() + 1, fp);
+  write_state(fp, (std::string((const char *) list, sizeof(list)) + text).c_str(),
+              sizeof(list) + text.size() + 1);
 }
 
 /** Rank 0 goes on with the total. */
 void FixMPMMaterial::restart(char *buf)
 {
   double list[3 + NWORK];
+  buf = read_state(lmp, id, buf);
   memcpy(list, buf, 2 * sizeof(double));
   if (list[0] != RESTART_VERSION || list[1] != NWORK)
     error->all(

@@ -210,7 +210,5 @@ void FixMPMIncompressible::write_restart(FILE *fp)
 {
   const auto data = flow->restart_data();
   if (comm->me) return;
-  const int size = data.size() * sizeof(double);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(data.data(), size, 1, fp);
+  write_state(fp, data.data(), data.size() * sizeof(double));
 }

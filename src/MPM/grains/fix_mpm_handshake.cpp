@@ -756,12 +756,11 @@ void FixMPMHandshake::write_restart(FILE *fp)
   keep_totals(world, &energy.heat, 1);
   keep_totals(world, &energy.lost, 1);
   if (comm->me) return;
-  const int size = sizeof(energy);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&energy, size, 1, fp);
+  write_state(fp, &energy, sizeof(energy));
 }
 
 void FixMPMHandshake::restart(char *buf)
 {
-  if (comm->me == 0) memcpy(&energy, buf, sizeof(energy));
+  const char *const state = read_state(lmp, id, buf);
+  if (comm->me == 0) memcpy(&energy, state, sizeof(energy));
 }

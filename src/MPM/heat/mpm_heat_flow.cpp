@@ -487,12 +487,12 @@ void MPMHeatFlow::write_restart(FILE *fp)
   powers();
   if (comm->me) return;
   const double length = (double) power.size();
-  const int size = sizeof(Totals) + sizeof(waited) + (1 + power.size()) * sizeof(double);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&totals, sizeof(Totals), 1, fp);
-  fwrite(&waited, sizeof(waited), 1, fp);
-  fwrite(&length, sizeof(double), 1, fp);
-  fwrite(power.data(), sizeof(double), power.size(), fp);
+  std::string state;
+  state.append((const char *) &totals, sizeof(Totals));
+  state.append((const char *) &waited, sizeof(waited));
+  state.append((const char *) &length, sizeof(double));
+  state.append((const char *) power.data(), power.size() * sizeof(double));
+  write_state(fp, state.data(), state.size());
 }
 
 /** The power is that of the last conduction until the next one; with other surfaces or contacts, it

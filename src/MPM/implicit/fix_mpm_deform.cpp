@@ -10,6 +10,7 @@
 
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
+#include "base/mpm_state.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "implicit/fix_mpm_relax.h"
@@ -287,14 +288,12 @@ void FixMPMDeform::end_motion()
 void FixMPMDeform::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const int size = MPMMeanDeformation::NREAL * (int) sizeof(double);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(cell.reals(), sizeof(double), MPMMeanDeformation::NREAL, fp);
+  write_state(fp, cell.reals(), MPMMeanDeformation::NREAL * sizeof(double));
 }
 
 void FixMPMDeform::restart(char *buf)
 {
-  memcpy(cell.reals(), buf, MPMMeanDeformation::NREAL * sizeof(double));
+  memcpy(cell.reals(), read_state(lmp, id, buf), MPMMeanDeformation::NREAL * sizeof(double));
   std::copy_n(cell.past.F, 9, cell.next);
 }
 

@@ -290,14 +290,12 @@ void FixMPMImplicit::write_restart(FILE *fp)
   std::copy_n(taken, 2, list + NTOTAL);
   std::copy_n(last, (int) NLAST, list + NTOTAL + 2);
   list[NTOTAL + 2 + NLAST] = kept.known;
-  const int size = sizeof(list);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list, size, 1, fp);
+  write_state(fp, list, sizeof(list));
 }
 
 void FixMPMImplicit::restart(char *buf)
 {
-  const auto *const list = (const double *) buf;
+  const auto *const list = (const double *) read_state(lmp, id, buf);
   std::copy_n(list, (int) NTOTAL, total);
   if (comm->me == 0) std::copy_n(list + NTOTAL, 2, taken);
   std::copy_n(list + NTOTAL + 2, (int) NLAST, last);

@@ -267,14 +267,12 @@ void FixMPMRelax::write_restart(FILE *fp)
   const auto &d = damping;
   const double list[] = {d.kinetic, unbalanced, carried,  ratio,      d.nrests, d.nsteps,
                          taken[0],  taken[1],   d.rested, d.interval, d.least,  d.grows};
-  const int size = sizeof(list);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list, size, 1, fp);
+  write_state(fp, list, sizeof(list));
 }
 
 void FixMPMRelax::restart(char *buf)
 {
-  const auto *const list = (const double *) buf;
+  const auto *const list = (const double *) read_state(lmp, id, buf);
   damping.kinetic = list[0];
   unbalanced = list[1];
   carried = list[2];

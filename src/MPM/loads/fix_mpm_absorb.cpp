@@ -153,17 +153,15 @@ void FixMPMAbsorb::pre_exchange()
 void FixMPMAbsorb::write_restart(FILE *fp)
 {
   if (comm->me) return;
-  const double list[3] = {rate, waited, heat};
-  const int size = (int) ((MPMTraffic::NREAL + 3) * sizeof(double));
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(total.reals(), sizeof(double), MPMTraffic::NREAL, fp);
-  fwrite(list, sizeof(double), 3, fp);
+  std::vector<double> list(total.reals(), total.reals() + MPMTraffic::NREAL);
+  list.insert(list.end(), {rate, waited, heat});
+  write_state(fp, list.data(), list.size() * sizeof(double));
 }
 
 void FixMPMAbsorb::restart(char *buf)
 {
   double list[MPMTraffic::NREAL + 3];
-  memcpy(list, buf, sizeof(list));
+  memcpy(list, read_state(lmp, id, buf), sizeof(list));
   std::copy_n(list, MPMTraffic::NREAL, total.reals());
   rate = list[MPMTraffic::NREAL];
   waited = list[MPMTraffic::NREAL + 1];

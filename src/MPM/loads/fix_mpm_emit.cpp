@@ -603,15 +603,13 @@ void FixMPMEmit::write_restart(FILE *fp)
   list.insert(list.end(), past.velocity, past.velocity + 3);
   list.insert(list.end(), past.total.reals(), past.total.reals() + MPMTraffic::NREAL);
   if (comm->me) return;
-  const int size = (int) (list.size() * sizeof(double));
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list.data(), sizeof(double), list.size(), fp);
+  write_state(fp, list.data(), list.size() * sizeof(double));
 }
 
 void FixMPMEmit::restart(char *buf)
 {
   double list[NREAL];
-  memcpy(list, buf, sizeof(list));
+  memcpy(list, read_state(lmp, id, buf), sizeof(list));
   past.travel = list[0];
   past.layers = list[1];
   past.started = list[2];

@@ -480,7 +480,7 @@ void FixMPMMesh::write_restart(FILE *fp)
 
 void FixMPMMesh::restart(char *buf)
 {
-  const auto *list = (const double *) buf;
+  const auto *list = (const double *) read_state(lmp, id, buf);
   body->load_work = comm->me == 0 ? list[0] : 0.0;
   if (list[1] != (double) body->positions.size())
     error->all(FLERR, Error::NOLASTLINE,

@@ -391,7 +391,7 @@ void FixMPMMeshContact::write_restart(FILE *fp)
 
 void FixMPMMeshContact::restart(char *buf)
 {
-  const auto *const list = (const double *) buf;
+  const auto *const list = (const double *) read_state(lmp, id, buf);
   if ((int) list[0] != size_array_rows)
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/mesh/contact {} had another number of bodies when the restart file was "

@@ -554,7 +554,7 @@ void FixMPMMeshHeat::write_restart(FILE *fp)
 
 void FixMPMMeshHeat::restart(char *buf)
 {
-  const auto *const list = (const double *) buf;
+  const auto *const list = (const double *) read_state(lmp, id, buf);
   if ((std::size_t) list[0] != heat.size())
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/mesh/heat {} had another number of conditions when the restart file was "

@@ -181,15 +181,13 @@ void FixMPMMixture::write_restart(FILE *fp)
   keep_totals(world, &mixture.dissipated, 1);
   if (comm->me) return;
   const double list[2] = {mixture.dissipated, mixture.meets ? 1.0 : 0.0};
-  const int size = sizeof(list);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(list, size, 1, fp);
+  write_state(fp, list, sizeof(list));
 }
 
 void FixMPMMixture::restart(char *buf)
 {
   double list[2];
-  memcpy(list, buf, sizeof(list));
+  memcpy(list, read_state(lmp, id, buf), sizeof(list));
   if (comm->me == 0) mixture.dissipated = list[0];
   mixture.meets = mixture.pores_known = list[1] != 0.0;
 }

@@ -322,8 +322,8 @@ struct Saved {
   double elapsed;
   MPMAffine::Velocities velocities;
   MPMSetupChecks::Lists lists;
-  int waited, nstart, ntext;    // nstart reals and ntext characters follow,
-  int more;    // and then, unless the file is old, 1: duration of the last step, 2: and lines
+  double last_dt;
+  int waited, nstart, ntext;    // nstart reals, ntext characters, and lines follow
 };
 }    // namespace
 
@@ -351,26 +351,21 @@ void FixMPM::write_restart(FILE *fp)
   saved.nstart = (int) start.size();
   saved.ntext = (int) text.size();
   const std::string lines = continuation->state();
-  saved.more = 2;
+  saved.last_dt = field->dt_of_last_step();
   if (comm->me) return;
-  const int size = (int) (sizeof(Saved) + start.size() * sizeof(double) + text.size() +
-                          sizeof(double) + lines.size() + 1);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&saved, sizeof(Saved), 1, fp);
-  if (!start.empty()) fwrite(start.data(), sizeof(double), start.size(), fp);
-  fwrite(text.c_str(), 1, text.size(), fp);
-  const double last_dt = field->dt_of_last_step();
-  fwrite(&last_dt, sizeof(double), 1, fp);
-  fwrite(lines.c_str(), 1, lines.size() + 1, fp);
+  std::string state((const char *) &saved, sizeof(Saved));
+  state.append((const char *) start.data(), start.size() * sizeof(double));
+  state += text + lines;
+  write_state(fp, state.c_str(), state.size() + 1);
 }
 
 void FixMPM::restart(char *buf)
 {
   Saved saved;
+  buf = read_state(lmp, id, buf);
   memcpy(&saved, buf, sizeof(Saved));
   const char *const start = buf + sizeof(Saved), *text = start + saved.nstart * sizeof(double);
-  const char *const last_dt = text + saved.ntext, *lines = last_dt + sizeof(double);
-  if (saved.more > 1) continuation->expect(lines);
+  continuation->expect(text + saved.ntext);
   std::string differences = continuation->other_lattice();
   if (differences.empty())
     differences = MPMFieldOptions(field->options)
@@ -383,9 +378,7 @@ void FixMPM::restart(char *buf)
                id, differences);
 
   // without it, the first step counts for the one before, as in a run from the start
-  double dt = 0.0;
-  if (saved.more > 0) memcpy(&dt, last_dt, sizeof(double));
-  field->continue_after(dt);
+  field->continue_after(saved.last_dt);
   if (comm->me == 0) static_cast<MPMEnergies &>(field->ledger) = saved.ledger;
   field->guard->deleted = saved.deleted;
   checks->lists_of_file = saved.lists;

@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
+#include "base/mpm_state.h"
 #include "base/mpm_step_limit.h"
 #include "comm.h"
 #include "error.h"
@@ -382,10 +383,7 @@ double FixMPMDt::compute_vector(int i)
 }
 
 /** Between runs: what the last one has left, as the next run compares with that; the fixes may not
- *  be those of the last run. Files of older versions begin with the time step and have no
- *  options. */
-
-static constexpr double WITH_OPTIONS = -1.0;
+ *  be those of the last run. */
 
 std::vector<double> FixMPMDt::saved_options() const
 {
@@ -405,30 +403,24 @@ void FixMPMDt::write_restart(FILE *fp)
     wanted_left = wanted;
     note_limits();
   }
-  std::vector<double> state = {WITH_OPTIONS, dt_left,   limit_left,  (double) nchanges,
-                               steps.dt,     steps.tag, wanted_left, grains_left};
+  std::vector<double> state = {dt_left,   limit_left,  (double) nchanges, steps.dt,
+                               steps.tag, wanted_left, grains_left};
   const auto options = saved_options();
   state.insert(state.end(), options.begin(), options.end());
   if (comm->me) return;
-  const int size = (int) (state.size() * sizeof(double));
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(state.data(), size, 1, fp);
+  write_state(fp, state.data(), state.size() * sizeof(double));
 }
 
 void FixMPMDt::restart(char *buf)
 {
-  const auto *const state = (const double *) buf;
-  const bool with_options = state[0] == WITH_OPTIONS;
-  const double *next = state + (with_options ? 1 : 0);
+  const double *next = (const double *) read_state(lmp, id, buf);
   dt_left = *next++;
   limit_left = *next++;
   nchanges = (bigint) *next++;
   if (strain > 0.0) carried = {next[0], 0.0, next[1], NO_GRAIN};
   next += 2;
   wanted_left = *next++;
-  grains_left = NO_POINTS.dt;
-  continues = !(dt_max > 0.0 && wanted_left > dt_max);
-  if (!with_options) return;
   grains_left = *next++;
+  continues = !(dt_max > 0.0 && wanted_left > dt_max);
   for (const double option : saved_options()) continues = continues && option == *next++;
 }

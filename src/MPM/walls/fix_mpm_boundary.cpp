@@ -324,14 +324,12 @@ void FixMPMBoundary::write_restart(FILE *fp)
   all.work *= force->mvv2e;
   state.work = all.work / force->mvv2e;    // with the precision of the file
   if (comm->me) return;
-  const int size = sizeof(MPMWallState);
-  fwrite(&size, sizeof(int), 1, fp);
-  fwrite(&all, size, 1, fp);
+  write_state(fp, &all, sizeof(MPMWallState));
 }
 
 void FixMPMBoundary::restart(char *buf)
 {
-  memcpy(&wall.state, buf, sizeof(MPMWallState));
+  memcpy(&wall.state, read_state(lmp, id, buf), sizeof(MPMWallState));
   wall.state.work = comm->me == 0 ? wall.state.work / force->mvv2e : 0.0;
 }
 
