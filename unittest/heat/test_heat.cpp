@@ -554,11 +554,15 @@ TEST(Idle, ChangesNothing)
 
 SERIAL_TEST(Radiation, OfDegreesCelsius)
 {
-  for (const char *where : {"xlo", "surface"})
-    expect_error(
-        replaced(bar(4, std::string(where) + " radiation 1.0 20", 0.0, "", -20.0), "lj", "si") +
-            "run 1\n",
-        "has the temperature -20: give all temperatures in kelvins");
+  const auto input = [](const char *where, double start) {
+    return replaced(bar(4, std::string(where) + " radiation 1.0 20", 0.0, "", start), "lj", "si") +
+        "run 1\n";
+  };
+  for (const char *where : {"xlo", "surface"}) {
+    expect_error(input(where, -20.0), "has the temperature -20: give all temperatures in kelvins");
+    for (const double start : {20.0, 293.0})
+      EXPECT_EQ(times_said(input(where, start), "is this one in degrees Celsius?"), start < 100.0);
+  }
 }
 
 SERIAL_TEST(BadInput, IsRefused)

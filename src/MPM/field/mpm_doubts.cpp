@@ -53,7 +53,8 @@ static const Doubt table[] = {
     {1.5, INF, "no heat goes there before material comes: is it the right face?"},
     {1.0, INF,
      "the inside of a region is a wall for heat, which goes through its surface only: use a region "
-     "that touches the body from outside, or side out"}};
+     "that touches the body from outside, or side out"},
+    {1.0e-30, 0.35, "radiation needs kelvins: is this one in degrees Celsius?"}};
 
 void MPMDoubts::check(Kind kind, double ratio, const std::string &who, const std::string &what)
 {

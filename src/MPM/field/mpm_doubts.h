@@ -27,13 +27,14 @@ namespace LAMMPS_NS {
 class MPMDoubts : protected Pointers {
  public:
   enum Kind {
-    SOFT_WATER,      ///< bulk modulus of pore water over the stiffness of the skeleton
-    LIGHT_SOIL,      ///< density of a saturated soil over that of the water in it
-    HEAVY_GRAINS,    ///< density of grains over that of water
-    NO_FLOW,         ///< way of pore water in the run over the node spacing, squared
-    TIME_STEP,       ///< the time step over the default one of the units
-    FACE_ALONE,      ///< least distance of material from a face with a condition, in node spacings
-    INSIDE_REGION    ///< material that is deep in a region with a condition, in points
+    SOFT_WATER,       ///< bulk modulus of pore water over the stiffness of the skeleton
+    LIGHT_SOIL,       ///< density of a saturated soil over that of the water in it
+    HEAVY_GRAINS,     ///< density of grains over that of water
+    NO_FLOW,          ///< way of pore water in the run over the node spacing, squared
+    TIME_STEP,        ///< the time step over the default one of the units
+    FACE_ALONE,       ///< least distance of material from a face with a condition, in node spacings
+    INSIDE_REGION,    ///< material that is deep in a region with a condition, in points
+    COLD              ///< temperature of a body that radiates over that of ice that melts
   };
 
   explicit MPMDoubts(class LAMMPS *lmp) : Pointers(lmp) {}

@@ -235,18 +235,26 @@ void FixMPMHeat::check_places()
 void FixMPMHeat::check_temperatures()
 {
   if (!options.radiates()) return;
+  constexpr double ICE = 273.15;    // kelvins
+  double mine = std::numeric_limits<double>::max(), lowest;
   for (const auto &of : flow.fields)
     for (const auto *material : of->field.materials) {
       const int column = material->temperature();
       if (!material->material->conducts()) continue;
-      for (int i = 0; i < atom->nlocal; i++)
-        if ((atom->mask[i] & material->groupbit) && of->field.is_point(i) &&
-            !(material->history[i][column] >= 0.0))
+      for (int i = 0; i < atom->nlocal; i++) {
+        if (!(atom->mask[i] & material->groupbit) || !of->field.is_point(i)) continue;
+        const double T = material->history[i][column];
+        if (!(T >= 0.0))
           error->one(FLERR, Error::NOLASTLINE,
                      "Fix mpm/heat {} radiation needs absolute temperatures, but point {} has the "
                      "temperature {:.6g}: give all temperatures in kelvins",
-                     id, atom->tag[i], material->history[i][column]);
+                     id, atom->tag[i], T);
+        mine = std::min(mine, T);
+      }
     }
+  MPI_Allreduce(&mine, &lowest, 1, MPI_DOUBLE, MPI_MIN, world);
+  doubts.check(MPMDoubts::COLD, lowest / ICE, fmt::format("Fix mpm/heat {}", id),
+               fmt::format("the lowest temperature of a point is {:.6g}", lowest));
 }
 
 void FixMPMHeat::post_force(int)
