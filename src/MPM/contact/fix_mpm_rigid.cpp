@@ -13,6 +13,7 @@
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
 #include "comm.h"
+#include "contact/mpm_rigid_collisions.h"
 #include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
@@ -22,6 +23,7 @@
 #include "force.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
+#include "mesh/surface_points.h"
 #include "modify.h"
 #include "update.h"
 #include "walls/fix_mpm_boundary.h"
@@ -50,6 +52,12 @@ Options MPMRigidOptions::declare()
                 "coefficient of friction, for *slip* and *separate*")});
   heat.declare(o, "the energy lost by friction becomes heat of the material, not of the body",
                "share of this energy that becomes heat of the material");
+  o.add("collide", {yes_no(collides)},
+        "whether the body meets walls of :doc:`fix mpm/boundary <fix_mpm_boundary>` and other "
+        "bodies of this style");
+  o.add("restitution",
+        {number(restitution, "e", {0.0, 1.0, true, true}, "1",
+                "ratio of the speeds after and before a collision with these")});
   o.add("velocity",
         {numbers(v, 3, "vx vy vz", ANY_NUMBER, "velocity", "velocity of the center at the start")})
       .once();
@@ -108,7 +116,7 @@ FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
   spin();
 
   scalar_flag = vector_flag = 1;
-  size_vector = 24;
+  size_vector = 31;
   global_freq = 1;
   extscalar = 1;
   extvector = 0;
@@ -189,7 +197,7 @@ void FixMPMRigid::init()
   if (contact.mesh) {
     region->need_body();
     contact.mesh = &region->surface_mesh();
-    find_corners();
+    find_points();
   } else if (!flows) {
     if (domain->dimension == 2)
       error->all(
@@ -218,6 +226,11 @@ void FixMPMRigid::init()
           "Fix mpm/rigid {}: a body in a flow of fix mpm/incompressible has no friction and does "
           "not part from it: use slip",
           id);
+    if (restitution > 0.0)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/rigid {}: a body in a flow of fix mpm/incompressible meets neither walls "
+                 "nor other bodies: drop restitution",
+                 id);
     if (!fields.empty())
       error->all(FLERR, Error::NOLASTLINE,
                  "Fix mpm/rigid {} is a body in a flow of fix mpm/incompressible, and cannot touch "
@@ -307,94 +320,75 @@ void FixMPMRigid::check_motion(double dt) const
                  remedy_of_step(lmp));
 }
 
-/** Each corner once, and the middles of triangles: where edges of two bodies lie in each other's
- *  faces, corners are in neither. */
-void FixMPMRigid::find_corners()
+/** Points of the surface at which it can meet others, as near to each other as nodes. */
+void FixMPMRigid::find_points()
 {
-  corners.clear();
-  for (const auto &triangle : contact.mesh->soup()) {
-    std::array<double, 3> middle;
-    for (int d = 0; d < 3; d++)
-      middle[d] = (triangle[0][d] + triangle[1][d] + triangle[2][d]) / 3.0;
-    corners.push_back(middle);
-    for (const auto &corner : triangle) corners.push_back(corner);
-  }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  for (auto &corner : corners)
-    for (int d = 0; d < 3; d++) corner[d] -= first[d];
+  auto soup = contact.mesh->soup();
+  for (auto &triangle : soup)
+    for (auto &corner : triangle)
+      for (int d = 0; d < 3; d++) corner[d] -= first[d];
+  double h = contact.farthest;
+  for (const auto *field : MPMField::all(lmp)) h = std::min(h, field->lattice.h);
+  contact.points = std::make_unique<SurfacePoints>(soup, h);
 }
 
-bool FixMPMRigid::has_corner(const std::function<bool(const double *)> &is_inside) const
+/** Nothing holds a body at a face of the box that is no wall: tells once when it goes through. All
+ *  ranks have the same motion. */
+void FixMPMRigid::warn_of_faces()
 {
-  return std::any_of(corners.begin(), corners.end(), [&](const std::array<double, 3> &corner) {
-    double place[3];
-    turn_to_space(corner.data(), place);
-    MathExtra::add3(place, x, place);
-    return is_inside(place);
-  });
-}
-
-/** The body touches material, and nothing else: tells once when it goes through a face of the box,
- *  a wall, or another body. Corners of the surface are looked at when the ball around the body has
- *  come near. All ranks have the same motion. */
-void FixMPMRigid::warn_of_walls()
-{
-  if (warned_of_walls) return;
-  std::string what;
+  if (warned_of_faces || !collides) return;
   const double reach = contact.farthest, least = 1.0e-6 * reach;
-  for (int face = 0; face < 6 && what.empty(); face++) {
+  for (int face = 0; face < 6 && !warned_of_faces; face++) {
     const int d = face / 2;
     const bool high = face % 2;
     const double at = high ? domain->boxhi[d] : domain->boxlo[d], sign = high ? 1.0 : -1.0;
-    if (!domain->periodicity[d] && sign * (x[d] - at) > -reach && has_corner([&](const double *p) {
-          return sign * (p[d] - at) > least;
+    if (domain->periodicity[d] || sign * (x[d] - at) < -reach) continue;
+    const auto walls = find_fixes<FixMPMBoundary>(lmp);
+    if (std::any_of(walls.begin(), walls.end(), [&](const auto *wall) {
+          return wall->has_face(face);
         }))
-      what = fmt::format("face {}{} of the box", (char) ('x' + d), high ? "hi" : "lo");
+      continue;
+    for (std::size_t i = 0; i < contact.points->size() && !warned_of_faces; i++)
+      warned_of_faces =
+          sign * (x[d] + MathExtra::dot3(Q[d], (*contact.points)[i].data()) - at) > least;
+    if (warned_of_faces && comm->me == 0)
+      error->warning(FLERR,
+                     "Fix mpm/rigid {}: the body goes through face {}{} of the box at step {}, as "
+                     "this is no wall: use fix mpm/boundary",
+                     id, (char) ('x' + d), high ? "hi" : "lo", update->ntimestep);
   }
-  for (const auto *wall : find_fixes<FixMPMBoundary>(lmp))
-    if (what.empty() && wall->is_region() && wall->distance(x, reach) < reach &&
-        has_corner([&](const double *p) {
-          return wall->distance(p, reach) < -least;
-        }))
-      what = fmt::format("the region of fix mpm/boundary {}", wall->id);
-  for (const auto *other : find_fixes<FixMPMRigid>(lmp)) {
-    const double both = reach + other->contact.farthest;
-    double apart[3];
-    MathExtra::sub3(x, other->x, apart);
-    if (what.empty() && other != this && MathExtra::len3(apart) < both &&
-        has_corner([&](const double *p) {
-          return other->distance(p, both) < -least;
-        }))
-      what = fmt::format("the body of fix mpm/rigid {}", other->id);
-  }
-  if (what.empty()) return;
-  warned_of_walls = true;
-  if (comm->me == 0)
-    error->warning(FLERR,
-                   "Fix mpm/rigid {}: the body goes through {} at step {}, as it touches material "
-                   "points only: push it back by the keyword force with a variable of f_{}[1] to "
-                   "f_{}[6], hold it, or use stiff points in a fix mpm of their own, with fix "
-                   "mpm/contact",
-                   id, what, update->ntimestep, id, id);
 }
 
-void FixMPMRigid::act(double dt, Stage stage)
+/** Velocities after all loads. */
+MPMRigidMember FixMPMRigid::begin_step(double dt)
 {
-  if (stage != STEP) return contact.repeat();
-  const double old[6] = {v[0], v[1], v[2], omega[0], omega[1], omega[2]};
+  MPMRigidMember member = {
+      id, *this, contact, told, {v[0], v[1], v[2], omega[0], omega[1], omega[2]}};
   dt_last = dt;
+  std::fill_n(collision, 6, 0.0);
   load_impulse(dt);
   hold();
-  contact.act();
+  return member;
+}
+
+/** Moves the body with its velocities after all contact. */
+void FixMPMRigid::end_step(double dt, const MPMRigidMember &member)
+{
   move(dt);
+  if (std::any_of(member.shift, member.shift + 6, [](double by) {
+        return by != 0.0;
+      }))
+    shift(member.shift);
 
   // The nodes were counted with the new velocity of the body. Impulses on it change its kinetic
   // energy with the mean of both: see MPMWallMotion::half_change(). The sum is the same on
   // all ranks
+  const double now[6] = {v[0], v[1], v[2], omega[0], omega[1], omega[2]};
   double faster = 0.0;
-  for (int d = 0; d < 3; d++)
-    faster -= 0.5 * (impulse[d] * (v[d] - old[d]) + impulse[3 + d] * (omega[d] - old[3 + d]));
+  for (int i = 0; i < 6; i++) {
+    faster -= 0.5 * impulse[i] * (now[i] - member.old[i]);
+    collision_work += 0.5 * collision[i] * (now[i] + member.old[i]);
+  }
   if (comm->me == 0) {
     auto &ledger = MPMField::all(lmp)[0]->ledger;
     ledger.contact -= faster * force->mvv2e;
@@ -402,7 +396,19 @@ void FixMPMRigid::act(double dt, Stage stage)
     if (ledger.on) ledger.transfer += faster * force->mvv2e;
   }
   check_motion(dt);
-  warn_of_walls();
+  warn_of_faces();
+}
+
+/** The first of the bodies acts for all of them, as they can meet. */
+void FixMPMRigid::act(double dt, Stage stage)
+{
+  if (stage != STEP) return contact.repeat();
+  const auto all = find_fixes<FixMPMRigid>(lmp);
+  if (all[0] != this) return;
+  std::vector<MPMRigidMember> members;
+  for (auto *body : all) members.push_back(body->begin_step(dt));
+  MPMRigidCollisions(lmp, members, dt).act();
+  for (std::size_t k = 0; k < all.size(); k++) all[k]->end_step(dt, members[k]);
 }
 
 void FixMPMRigid::motion(double *center, double *velocity, double *angular) const
@@ -450,15 +456,17 @@ double FixMPMRigid::compute_scalar()
   return 0.5 * force->mvv2e * (mass * MathExtra::dot3(v, v) + MathExtra::dot3(L, omega));
 }
 
-/** Center, velocity, angular velocity, force and torque of the material, rotation matrix by rows.
- */
+/** Center, velocity, angular velocity, force and torque of the material, rotation matrix by rows,
+ *  force and torque of walls and other bodies, and their work. */
 double FixMPMRigid::compute_vector(int i)
 {
   if (i < 3) return x[i];
   if (i < 6) return v[i - 3];
   if (i < 9) return omega[i - 6];
   if (i < 15) return dt_last > 0.0 ? impulse[i - 9] / (dt_last * force->ftm2v) : 0.0;
-  return Q[(i - 15) / 3][(i - 15) % 3];
+  if (i < 24) return Q[(i - 15) / 3][(i - 15) % 3];
+  if (i < 30) return dt_last > 0.0 ? collision[i - 24] / (dt_last * force->ftm2v) : 0.0;
+  return collision_work * force->mvv2e;
 }
 
 void FixMPMRigid::write_restart(FILE *fp)

@@ -21,12 +21,10 @@ FixStyle(mpm/rigid,FixMPMRigid);
 #include "fix.h"
 #include "math_extra.h"
 
-#include <array>
-#include <functional>
 #include <string>
-#include <vector>
 
 namespace LAMMPS_NS {
+struct MPMRigidMember;
 
 /** A free rigid body with the shape of a region mpm/mesh, in contact with the material at the nodes
  *  inside of it. Body and nodes get opposite impulses, which are solved for together, so that light
@@ -83,17 +81,17 @@ class FixMPMRigid :
  private:
   double first[3];    // center of the body in the region
   MPMRigidContact contact;
-  std::vector<std::array<double, 3>> corners;    // of the surface, from the center of the body
-  bool warned_of_walls = false;
+  bool warned_of_faces = false, told = false;
 
   void find_shape();
   void load_impulse(double dt);
   double speed() const;
   double spacing_of_flow() const;
   void check_motion(double dt) const;
-  void find_corners();
-  bool has_corner(const std::function<bool(const double *)> &is_inside) const;
-  void warn_of_walls();
+  void find_points();
+  MPMRigidMember begin_step(double dt);
+  void end_step(double dt, const MPMRigidMember &);
+  void warn_of_faces();
 };
 
 }    // namespace LAMMPS_NS

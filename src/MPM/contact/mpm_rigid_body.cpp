@@ -81,6 +81,15 @@ void MPMRigidBody::move(double dt)
   for (int d = 0; d < 3; d++) x[d] += dt * v[d];
 }
 
+void MPMRigidBody::shift(const double *by)
+{
+  double start[3][3];
+  memcpy(start, Q, sizeof(Q));
+  rotate(by + 3, start, Q);
+  MathExtra::add3(x, by, x);
+  spin();
+}
+
 void MPMRigidBody::find_mobility(double *mobility)
 {
   const MPMRigidMotion before = *this;

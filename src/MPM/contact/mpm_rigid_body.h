@@ -17,6 +17,8 @@ struct MPMRigidMotion {
   double Q[3][3];                ///< rotation from the frame of the mesh to space
   double omega[3];               ///< angular velocity
   double impulse[6], dt_last;    ///< of the material on the body in the last step
+  double collision[6];           ///< impulse and moment of walls and other bodies in that step
+  double collision_work;         ///< of these since the start [mass velocity^2]
 };
 
 /** A rigid body, components of whose motion may be held. */
@@ -39,6 +41,8 @@ struct MPMRigidBody : MPMRigidMotion {
   /** Moves center and orientation to the end of the step: rotation by the angular velocity at its
    *  middle, which keeps the angular momentum. */
   void move(double dt);
+  /** Moves and turns it besides its motion, by distances and angles [6]. */
+  void shift(const double *by);
   /** Change of velocity and angular velocity [6] by an impulse and its moment: [6][6]. */
   void find_mobility(double *mobility);
 };

@@ -30,6 +30,7 @@
 #include "math/coulomb.h"
 #include "math_extra.h"
 #include "mesh/surface_mesh.h"
+#include "mesh/surface_points.h"
 #include "walls/mpm_patch_sums.h"
 
 #include <Eigen/Dense>
@@ -43,12 +44,41 @@ using namespace MPM_NS;
 static constexpr double PATCH = 2.5;    // radius of sums along the surface, in node spacings
 static constexpr double LAYER_FROM = 1.0, LAYER_TO = 3.0;    // of the surface, in node spacings
 
-void MPMRigidContact::act()
+MPMRigidContact::MPMRigidContact(LAMMPS *lmp, MPMRigidOptions &body) : Pointers(lmp), body(body) {}
+
+MPMRigidContact::~MPMRigidContact() = default;
+
+void MPMRigidContact::begin()
 {
   find_contacts();
   if (body.friction > 0.0) find_water();
   if (heating) heating->begin_step();
-  solve();
+}
+
+void MPMRigidContact::act()
+{
+  constexpr int MAX_ROUNDS = 30;
+  double u[6];
+  begin();
+  for (int round = 0; round < MAX_ROUNDS; round++) {
+    find_motion(u, nullptr);
+    if (!decide(u)) break;
+  }
+  end(u);
+}
+
+bool MPMRigidContact::decide(const double *u)
+{
+  const int changed = decide_contacts(u);
+  int changed_all;
+  MPI_Allreduce(&changed, &changed_all, 1, MPI_INT, MPI_MAX, world);
+  return changed_all;
+}
+
+void MPMRigidContact::end(const double *u)
+{
+  push_nodes(u);
+  body.push(body.impulse);
 }
 
 void MPMRigidContact::repeat()
@@ -149,24 +179,7 @@ void MPMRigidContact::Contact::relative_velocity(const double *u, double *w) con
   for (int d = 0; d < 3; d++) w[d] += u[d] - v[d];
 }
 
-/** Velocities of the body after the contact. */
-void MPMRigidContact::solve()
-{
-  constexpr int MAX_ROUNDS = 30;
-  double u[6];
-  for (int round = 1;; round++) {
-    solve_system(u);
-    const int changed = decide_contacts(u);
-    int changed_all;
-    MPI_Allreduce(&changed, &changed_all, 1, MPI_INT, MPI_MAX, world);
-    if (!changed_all || round == MAX_ROUNDS) break;
-  }
-  push_nodes(u);
-  body.push(body.impulse);
-}
-
-/** Finds the velocity and angular velocity u of the body, for contacts in their present states. */
-void MPMRigidContact::solve_system(double *u) const
+void MPMRigidContact::find_motion(double *u, double (*mobility)[6]) const
 {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -210,8 +223,13 @@ void MPMRigidContact::solve_system(double *u) const
     A(i, i) = 1.0;
     b(i) = 0.0;
   }
-  const Vector6 solution = A.partialPivLu().solve(b);
+  const auto factors = A.partialPivLu();
+  const Vector6 solution = factors.solve(b);
   std::copy_n(solution.data(), 6, u);
+  for (int j = 0; mobility && j < 6; j++) {
+    const Vector6 change = factors.solve(Vector6::Unit(j));
+    for (int i = 0; i < 6; i++) mobility[i][j] = body.fixed[j] ? 0.0 : change(i);
+  }
 }
 
 /** Finds the states of contacts with the motion u of the body. Returns whether these are not the
@@ -357,4 +375,14 @@ double MPMRigidContact::distance(const double *at, double far) const
   SurfaceMesh::Point p, closest;
   place_in_body(r, p);
   return mesh->bound(p) > far ? far : mesh->distance(p, closest);
+}
+
+void MPMRigidContact::normal(const double *at, double *n) const
+{
+  double r[3];
+  from_center(at, r);
+  SurfaceMesh::Point p, out;
+  place_in_body(r, p);
+  mesh->distance_and_normal(p, out);
+  MathExtra::matvec(body.Q, out.data(), n);
 }

@@ -22,6 +22,7 @@
 namespace MPM_NS {
 class Grid;
 class SurfaceMesh;
+class SurfacePoints;
 }    // namespace MPM_NS
 
 namespace LAMMPS_NS {
@@ -36,6 +37,8 @@ struct MPMRigidOptions : MPMRigidBody {
   double amount = 0.0;    ///< mass or density
   Kind kind = STICK;
   double friction = 0.0;
+  bool collides = true;
+  double restitution = 0.0;
   double gravity[3] = {0.0, 0.0, 0.0};
   MPM_NS::NumberOrVariable load[3], moment[3];    ///< force and torque
   MPMFrictionHeatOptions heat;
@@ -47,19 +50,33 @@ struct MPMRigidOptions : MPMRigidBody {
 /** Contact of a rigid body with the material at the nodes inside of it. */
 class MPMRigidContact : protected Pointers {
  public:
-  MPMRigidContact(class LAMMPS *lmp, MPMRigidOptions &body) : Pointers(lmp), body(body) {}
+  MPMRigidContact(class LAMMPS *lmp, MPMRigidOptions &body);
+  ~MPMRigidContact() override;
 
   const MPM_NS::SurfaceMesh *mesh = nullptr;    ///< null: the region is of another style, in a flow
   double farthest = 0.0;                        ///< largest distance from the center of the body
   std::unique_ptr<MPMFrictionHeat> heating;     ///< null: not requested
+  std::unique_ptr<MPM_NS::SurfacePoints> points;    ///< of the surface, from the center of the body
 
   /** Gives nodes and body their impulses. Collective. */
   void act();
+  /** The parts of act(), for bodies whose velocities others change, too. First: finds nodes.
+   *  Collective. */
+  void begin();
+  /** Finds velocity and angular velocity u[6] of the body with its nodes in their present states,
+   *  and unless null, the change of u by an impulse and its moment about the center. Collective. */
+  void find_motion(double *u, double (*mobility)[6]) const;
+  /** Finds the states of nodes for the motion u. Returns whether they have changed. Collective. */
+  bool decide(const double *u);
+  /** Gives nodes, and the body, the impulses for the motion u of the body. Collective. */
+  void end(const double *u);
   /** Gives velocities that serve the gradient alone those of the body, along what act() has
    *  decided. */
   void repeat();
   /** Signed distance from the surface, negative inside; far if it is larger. */
   double distance(const double *at, double far) const;
+  /** Unit normal out of the body; zero where there is none. */
+  void normal(const double *at, double *n) const;
 
  private:
   struct Contact {    // a node inside of the body
@@ -89,8 +106,6 @@ class MPMRigidContact : protected Pointers {
   void find_contacts();
   bool find_normal(const std::array<double, 3> &, Contact &) const;
   void place_in_body(const double *r, std::array<double, 3> &) const;
-  void solve();
-  void solve_system(double *u) const;
   bool decide_contacts(const double *u);
   void push_nodes(const double *u);
   void find_water();

@@ -271,6 +271,15 @@ void FixMPMBoundary::predict(MPMField &field, const std::vector<char> &near,
   if (const auto *list = nodes_of(field)) list->predict(near, to);
 }
 
+void FixMPMBoundary::list_obstacles(double dt, std::vector<std::unique_ptr<MPMObstacle>> &list)
+{
+  update_motion(wall, nodes, dt);
+  const std::vector<int> the_region = {-1};
+  for (const int face : is_region() ? the_region : wall.face_list)
+    list.push_back(std::make_unique<MPMWallObstacle>(*this, wall, *domain, face,
+                                                     wall.fields[0]->lattice.h, dt));
+}
+
 /** Friction that an implicit solver has found, once in a step and for all walls before any of them
  *  holds nodes: at nodes that another wall holds, this bears the friction. */
 void FixMPMBoundary::rub(double dt)

@@ -20,6 +20,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "field/mpm_trial_contact.h"
 #include "fix.h"
 #include "walls/mpm_contact_search.h"
+#include "walls/mpm_obstacle.h"
 #include "walls/mpm_thin_regions.h"
 #include "walls/mpm_wall.h"
 #include "walls/mpm_wall_contact.h"
@@ -27,7 +28,9 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "walls/mpm_wall_reaction.h"
 #include "walls/mpm_wall_trial.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -71,12 +74,25 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   bool gives_heat() const override { return wall.heat.heats(); }
   /** Is the wall a region? Otherwise it is one or more faces of the box. */
   bool is_region() const { return !wall.region_id.empty(); }
+  /** Is this face of the box a wall? */
+  bool has_face(int face) const
+  {
+    return std::count(wall.face_list.begin(), wall.face_list.end(), face) > 0;
+  }
   /** Do the walls have a velocity, now or later in the run? */
   bool moves() const { return wall.moves(); }
   /** Signed distance of x from the surface of the region, negative inside; far if it is larger.
    *  Only during a run. */
   double distance(const double *x, double far) const { return wall.surface->distance(x, far); }
   bool holds_axis(const MPMField &field) const override { return wall.holds_axis(field); }
+  /** Adds the faces, or the region, to what rigid bodies can meet in a step. */
+  void list_obstacles(double dt, std::vector<std::unique_ptr<MPMObstacle>> &);
+  /** Counts an impulse on a rigid body at x [mass velocity] in the force on the wall in this step;
+   *  to be called on all ranks, before the wall acts on nodes. */
+  void add_body_impulse(const double *x, const double *impulse)
+  {
+    reaction.add_body_impulse(x, impulse);
+  }
 
   /** Adds an impulse on a node [mass velocity] to the reaction that the wall counted for it in this
    *  step, with its moment and work. */

@@ -8,6 +8,7 @@
 
 #include "walls/mpm_wall_reaction.h"
 
+#include "comm.h"
 #include "field/mpm_field.h"
 #include "field/mpm_friction_heat.h"
 #include "force.h"
@@ -36,7 +37,8 @@ void MPMWallReaction::begin_run(const Fix &user)
 
 void MPMWallReaction::begin_step(double dt)
 {
-  std::fill_n(impulse, 6, 0.0);
+  std::copy_n(on_bodies, 6, impulse);
+  std::fill_n(on_bodies, 6, 0.0);
   dt_last = dt;
   reaction_known = false;
   if (heating) heating->begin_step();
@@ -129,6 +131,17 @@ void MPMWallReaction::add(MPMField &field, int64_t node, const double *push)
   field.ledger.boundary += moved * force->mvv2e;
   field.ledger.driven += driven * force->mvv2e;
   if (field.ledger.on) field.ledger.transfer += (gained - moved) * force->mvv2e;
+}
+
+void MPMWallReaction::add_body_impulse(const double *x, const double *push)
+{
+  if (comm->me) return;
+  double moment[3];
+  MathExtra::cross3(x, push, moment);
+  for (int d = 0; d < 3; d++) {
+    on_bodies[d] += push[d];
+    on_bodies[3 + d] += moment[d];
+  }
 }
 
 /** Gives the heat of friction to a node whose velocity changes to v. The work of the tangential

@@ -51,6 +51,9 @@ class MPMWallReaction : protected Pointers {
                     const double *whole = nullptr);
   /** Adds an impulse on a node [mass velocity] to what the wall gave it in this step. */
   void add(MPMField &, int64_t node, const double *impulse);
+  /** Adds an impulse on a rigid body at x [mass velocity] to what the wall gives in the step that
+   *  begins next. Called on all ranks with the same values. It does no work on material. */
+  void add_body_impulse(const double *x, const double *push);
 
   /** Work on the body so far, of all ranks [energy]. Collective. */
   double work() const;
@@ -62,8 +65,9 @@ class MPMWallReaction : protected Pointers {
  private:
   MPMWall &wall;
   std::unique_ptr<MPMFrictionHeat> heating;    // null: not requested
-  double impulse[6] = {};     // on the body, and its moment, in the last step; this rank's share
-  double reaction[6] = {};    // force and torque
+  double impulse[6] = {};      // on the body, and its moment, in the last step; this rank's share
+  double reaction[6] = {};     // force and torque
+  double on_bodies[6] = {};    // impulse on rigid bodies in the step that begins
   double dt_last = 0.0;
   bool reaction_known = true;
 
