@@ -10,19 +10,22 @@
 
 #include "domain.h"
 #include "math_extra.h"
+#include "region.h"
 #include "walls/fix_mpm_boundary.h"
 #include "walls/mpm_region_surface.h"
 #include "walls/mpm_wall.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 
 MPMWallObstacle::MPMWallObstacle(FixMPMBoundary &fix, const MPMWall &wall, const Domain &box,
                                  int face, double spacing, double dt) :
     fix(fix),
-    wall(wall), box(box), face(face), spacing(spacing), dt(dt)
+    wall(wall), box(box), face(face), plane(face >= 0 || strcmp(wall.region->style, "plane") == 0),
+    spacing(spacing), dt(dt)
 {
   name = face < 0 ? "the region of fix mpm/boundary " : "a face of fix mpm/boundary ";
   name += fix.id;

@@ -49,7 +49,7 @@ class MPMWallObstacle : public MPMObstacle {
   double distance(const double *x, double far) const override;
   void normal(const double *x, double *n) const override;
   void velocity(const double *x, const double *n, double *v) const override;
-  bool is_plane() const override { return face >= 0; }
+  bool is_plane() const override { return plane; }
   void push(const double *x, const double *impulse) override;
 
  private:
@@ -57,6 +57,7 @@ class MPMWallObstacle : public MPMObstacle {
   const MPMWall &wall;
   const Domain &box;
   const int face;
+  const bool plane;
   const double spacing, dt;
 
   void place(const double *x, double *y) const;
