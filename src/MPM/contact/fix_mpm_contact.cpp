@@ -22,6 +22,7 @@
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_interfaces.h"
+#include "field/mpm_smoothing.h"
 #include "force.h"
 #include "modify.h"
 
@@ -317,6 +318,17 @@ void FixMPMContact::count(const MPMContacts::Node &node, const MPMContactBodies:
   bodies.book(node.record, start);
 }
 
+/** Tells fields with smooth volumes which nodes do not move as their pressure would have them. */
+void FixMPMContact::bind_nodes()
+{
+  for (const auto &pair : contacts.pairs) {
+    if (pair.state == MPMNodeContact::OPEN) continue;
+    const auto &a = bodies[pair.a], &b = bodies[pair.b];
+    if (a.field->smoothing) a.field->smoothing->bind(a.node_of(pair.ra));
+    if (b.field->smoothing) b.field->smoothing->bind(b.node_of(pair.rb));
+  }
+}
+
 void FixMPMContact::act(double dt, Stage stage)
 {
   if (stage == TRIAL) return;
@@ -339,6 +351,7 @@ void FixMPMContact::act(double dt, Stage stage)
   solver.solve(contacts, dt, false, [this](const auto &node, const auto &start) {
     count(node, start);
   });
+  bind_nodes();
   if (++steps % LOOK_EVERY == 1) {
     solver.report_unsolved(id);
     search.report_missed_water();

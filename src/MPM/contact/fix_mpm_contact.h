@@ -92,6 +92,7 @@ class FixMPMContact :
   void check_other_contacts() const;
   void refuse_implicit_steps() const;
   double heat_of(const MPMNodeContact &, bool owned);
+  void bind_nodes();
   void count(const MPMContacts::Node &, const MPMContactBodies::Velocities &start);
 };
 

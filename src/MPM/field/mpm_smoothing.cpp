@@ -12,14 +12,20 @@
  *
  *  is what the nodes see: P_i is the linear function of the place that fits q best around node i,
  *  by least squares with the weights N_iq V_q. q goes towards S q by the share that the user gives
- *  in the time in which sound crosses a cell. Why: see DECISIONS.md. */
+ *  in the time in which sound crosses a cell. Why: see DECISIONS.md.
+ *
+ *  Nodes that a body moves, by contact or because it has points in the same field, are bound. They
+ *  do not strain the liquid next to them as its pressure would. Points count in the fits by what
+ *  free nodes have of them, so that the pressure at the body continues that of the liquid. */
 
 #include "field/mpm_smoothing.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_points.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_node_action.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
 #include "field/mpm_time_limit.h"
@@ -40,6 +46,10 @@ using namespace MPM_NS;
 // of them
 static constexpr double MIN_EXTENT = 1.0e-8;
 
+// least weight of points in the fits: where all nodes are bound, as in a thin layer on a body,
+// points count alike
+static constexpr double LEAST_WEIGHT = 1.0e-3;
+
 void MPMSmoothing::init()
 {
   kernels = SmoothingKernels::select(*field.kernels, field.lattice.dim, field.options.shape);
@@ -51,6 +61,17 @@ void MPMSmoothing::init()
                "but there is none: remove it, or use a material with eos tait or linear, without "
                "strength and history variables",
                field.id());
+  const auto actions = find_fixes<MPMNodeAction>(lmp);
+  meets_bodies = std::any_of(actions.begin(), actions.end(),
+                             [this](auto *action) {
+                               return action->touches(field.id());
+                             }) ||
+      !field.elements.empty() ||
+      std::any_of(field.materials.begin(), field.materials.end(), [](auto *material) {
+                   return material->material->is_solid();
+                 });
+  contacts.clear();
+  given = 0.0;
 }
 
 /** To the sums of a node, for a point at r from it; V: volume times weight. */
@@ -116,12 +137,58 @@ double MPMSmoothing::time_to_cross(const FixMPMMaterial &fluid) const
   return field.lattice.h * std::sqrt(fluid.material->density() * scale / bulk);
 }
 
+/** Adds the nodes that bodies of this field reach to those of contact. Collective. */
+void MPMSmoothing::find_bound_nodes()
+{
+  const MPMStencil stencil(field);
+  bound.assign(field.grid.nnodes(), 0.0);
+  for (const int64_t node : contacts) bound[node] = 1.0;
+  for (const auto &run : field.map->runs) {
+    if (run.material && !run.material->material->is_solid()) continue;
+    for (int i = run.first; i < run.last; i++)
+      stencil.visit(field.grid.blocks[run.slot], i, [this](const MPMStencil::Node &node) {
+        if (node.weight > 0.0) bound[node.number] = 1.0;
+      });
+  }
+  field.nodes.sum(bound.data(), 1, 0, 1);
+  field.nodes.complete(bound.data(), 1, 1);
+}
+
+/** Volumes of points times the share of their free nodes, [n]. */
+const double *MPMSmoothing::weigh_points(const FixMPMMaterial *fluid)
+{
+  const MPMStencil stencil(field);
+  const double *const vol0 = field.rows().vol0;
+  std::vector<char> has_bound(field.grid.blocks.size());
+  for (std::size_t n = 0; n < bound.size(); n++)
+    if (bound[n] > 0.0) has_bound[n / NODES_PER_BLOCK] = 1;
+  weights.resize(atom->nmax);
+  for (const auto &run : field.map->runs) {
+    if (run.material != fluid) continue;
+    const auto &block = field.grid.blocks[run.slot];
+    std::copy(vol0 + run.first, vol0 + run.last, weights.begin() + run.first);
+    if (std::none_of(block.slot, block.slot + 27, [&](int slot) {
+          return slot >= 0 && has_bound[slot];
+        }))
+      continue;
+    for (int i = run.first; i < run.last; i++) {
+      double share = 0.0;
+      stencil.visit(block, i, [&](const MPMStencil::Node &node) {
+        if (!(bound[node.number] > 0.0)) share += node.weight;
+      });
+      weights[i] *= LEAST_WEIGHT + (1.0 - LEAST_WEIGHT) * share;
+    }
+  }
+  return weights.data();
+}
+
 /** The sums of nodes over this rank's points. */
 template <int DIM> void MPMSmoothing::add_points(const FixMPMMaterial *fluid)
 {
   constexpr int WIDTH = fit_width(DIM);
   const MPMStencil stencil(field);
-  const PointRows rows = field.rows();
+  PointRows rows = field.rows();
+  if (meets_bodies) rows.vol0 = weigh_points(fluid);
   const TransferStep step = field.step_data();
   sums.assign(field.grid.nnodes() * WIDTH, 0.0);
   q.resize(atom->nmax);
@@ -241,13 +308,14 @@ template <int DIM> void MPMSmoothing::change_volumes(const MPMPointMap::Run &run
   const Material &material = *run.material->material;
   // is all stress the pressure that belongs to the volume of the point?
   const bool plain = !material.is_viscous() && !field.options.averages_stress();
+  const double *const vol0 = field.rows().vol0, energy = 1.0 / force->nktv2p;
   Batch &b = *field.batch;
   for (int start = run.first; start < run.last; start += BATCH) {
     const int n = std::min(BATCH, run.last - start);
     double before[BATCH], ratio[BATCH], scale[BATCH];    // Kirchhoff stress; of J, and of lengths
     b.n = n;
     b.history = nullptr;
-    if (!plain) {
+    if (!plain || meets_bodies) {
       for (int p = 0; p < n; p++) b.J[p] = 1.0 + q[start + p];
       material.initial_stress(b);
       for (int p = 0; p < n; p++) before[p] = b.J[p] * b.stress[0][p];
@@ -262,6 +330,10 @@ template <int DIM> void MPMSmoothing::change_volumes(const MPMPointMap::Run &run
     for (int p = 0; p < n; p++) {
       double *const tau = field.points->tau[start + p], *const F = field.points->F[start + p];
       const double now = b.J[p] * b.stress[0][p];
+      if (meets_bodies) {    // dW/dJ is minus the pressure
+        const double J = 1.0 + q[start + p];
+        given += 0.5 * energy * vol0[start + p] * (now / b.J[p] + before[p] / J) * (b.J[p] - J);
+      }
       for (int c = 0; c < 3; c++) tau[c] = plain ? now : tau[c] + (now - before[p]);
       for (int c = 0; c < (DIM == 3 ? 9 : 5); c++) F[c] *= scale[p];
     }
@@ -289,11 +361,14 @@ void MPMSmoothing::smooth()
   // half as often with twice the share: errors over a few cells go as fast, at half the cost
   const int crossings = field.options.smooth > 0.5 ? 1 : 2;
   const double now = elapsed_time(*update);
+  bool found = !meets_bodies;
   for (auto *fluid : field.materials) {
     if (!fluid->material->is_barotropic()) continue;
     const double cross = crossings * time_to_cross(*fluid);
     const double times = std::floor(now / cross) - std::floor((now - field.step_dt()) / cross);
     if (!(times > 0.0)) continue;
+    if (!found) find_bound_nodes();
+    found = true;
     field.jacobians.forget();
     const double share = 1.0 - std::pow(1.0 - crossings * field.options.smooth, times);
     if (field.lattice.dim == 3)
@@ -301,4 +376,5 @@ void MPMSmoothing::smooth()
     else
       smooth<2>(fluid, share);
   }
+  contacts.clear();
 }

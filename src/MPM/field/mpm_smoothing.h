@@ -25,21 +25,39 @@ class MPMSmoothing : protected Pointers {
 
   /** Start of a run. Stops with an error if there is no fluid. */
   void init();
-  /** Start of a step, when the map of points is valid. Smooths each fluid once in the time in which
-   *  sound crosses one or two cells. */
+  /** After node actions, before points move. Smooths each fluid once in the time in which sound
+   *  crosses one or two cells. */
   void smooth();
+  /** In this step, contact binds this node of the field to another body. */
+  void bind(int64_t node) { contacts.push_back(node); }
 
-  double memory_usage() const { return (sums.capacity() + 2 * q.capacity()) * sizeof(double); }
+  /** Energy that volumes got so far in this run, where fits reach bound nodes [energy], this rank's
+   *  share: there, and nowhere else, smoothing can add some. */
+  double energy_given() const { return given; }
+
+  double memory_usage() const
+  {
+    return (sums.capacity() + 2 * q.capacity() + bound.capacity() + weights.capacity()) *
+        sizeof(double) +
+        contacts.capacity() * sizeof(int64_t);
+  }
 
  private:
   MPMField &field;
   MPM_NS::SmoothingKernels kernels = {};
   std::vector<double> sums;       // [node][fit_width()]
   std::vector<double> q, mean;    // of points: J - 1, and its mean from the fits around their nodes
+  std::vector<int64_t> contacts;    // nodes that contact binds in this step
+  std::vector<double> bound;        // [node] positive: moves with a body that is no liquid
+  double given = 0.0;
+  std::vector<double> weights;              // [n] volumes that count in the fits
+  bool meets_bodies = false;                // can there be bound nodes?
   std::vector<double> tile, fits;           // of a run of points: sums, and fits
   std::vector<std::array<int, 6>> boxes;    // of runs of points, in their tiles
 
   double time_to_cross(const FixMPMMaterial &) const;
+  void find_bound_nodes();
+  const double *weigh_points(const FixMPMMaterial *);
   template <int DIM> void smooth(const FixMPMMaterial *, double share);
   template <int DIM> void add_points(const FixMPMMaterial *);
   template <int DIM> void fit_nodes();

@@ -128,10 +128,6 @@ void begin(MPMPlan &plan)
   plan.together("topology", {Data::POSITION, Data::DEFORMATION}, found, [&plan]() {
     plan.find_blocks();
   });
-  const auto smooth = [](MPMField &field) {
-    field.smoothing->smooth();
-  };
-  plan.each("smoother volumes", STATE_IN_BLOCKS, STATE, smooth, with<&Options::smooths_volumes>);
   const auto drift = [](MPMField &field) {
     field.drift->step();
   };
@@ -186,6 +182,10 @@ void solve(MPMPlan &plan)
             account, has_ledger);
   plan.each("XPIC", Data{Data::POSITION, Data::MASS} + AT_NODES, {Data::VELOCITY, Data::NODES},
             xpic, with<&Options::has_xpic>);
+  const auto smooth = [](MPMField &field) {
+    field.smoothing->smooth();
+  };
+  plan.each("smoother volumes", STATE_IN_BLOCKS, STATE, smooth, with<&Options::smooths_volumes>);
   plan.place(MPMPlan::AFTER_SOLVE);
   const auto heat = [](MPMField &field) {
     field.heating->before_motion();

@@ -18,6 +18,7 @@
 #include "field/mpm_physics.h"
 #include "field/mpm_plan.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_smoothing.h"
 #include "fix.h"
 #include "force.h"
 #include "math/matrix.h"
@@ -249,6 +250,7 @@ MPMEnergyWatch::Sums MPMEnergyWatch::sums() const
     }
     const auto &ledger = field->ledger;
     mine.work += ledger.driven + ledger.deleted_kinetic + ledger.deleted_stored;
+    if (field->smoothing) mine.work += field->smoothing->energy_given();
   }
 
   std::vector<double> values;
