@@ -5,8 +5,8 @@
 
 usage: fuzz.py [options]
 
-Runs inputs with random mistakes (fuzz_inputs.py) and scenes that are right (fuzz_scenes.py), and tells
-of each how it ended:
+Runs inputs with random mistakes (fuzz_inputs.py), scenes that are right (fuzz_scenes.py), and compositions
+of the physics of the package (fuzz_compositions.py), and tells of each how it ended:
 
   ran, error       went on to the end, or stopped with an error message of LAMMPS
   crash            a signal, or an exit without a message of LAMMPS
@@ -16,11 +16,14 @@ of each how it ended:
   mass, momentum   of a scene that nothing acts on have changed
   ranks            the state on two processes is another than on one, by more than round-off can do
   restart          the state after a restart is not, bit by bit, that of the uninterrupted run
-  refused          a scene that ought to be right ended in an error
+  check, whole, units    of a composition: mass or the ledger of energy does not close, one run is not the
+                   same as two, another unit style gives another result (fuzz_oracles.py)
+  refused          a scene that ought to be right ended in an error; a composition may be refused
 
   --inputs N       inputs with mistakes (default 200)
   --scenes N       scenes (default 20)
-  --seed N         of the first input and the first scene, the others follow (default 1)
+  --compositions N compositions (default 0)
+  --seed N         of the first input, scene, and composition, the others follow (default 1)
   --minutes M      begin nothing new after that time
   --go-on          leave out what a run into the same folder has done: the summary is that of all parts
   --every S        seconds between lines that tell how far it is (default 60)
@@ -31,10 +34,10 @@ of each how it ended:
   --limit S        seconds of processor time for a run (default: 200 times a small scene, at least 20)
   --memory GB      of address space for each run (default 4)
   --bases          only run the inputs as they are before mistakes are made
-  --show           only print the input of --seed, or the scene with --scenes 1 --inputs 0
+  --show           only print the input of --seed; the scene or composition with --inputs 0, too
 
 Each failure is a folder with the input, its files, output, and a file COMMAND that repeats it; crashes and
-states that are not finite also have the input with as few lines as fail (small.in).  Failures that are
+states that are not finite, and compositions, also have the input with as few lines as fail (small.in).  Failures that are
 those of LAMMPS itself are in fuzz_known.txt with a reason.  Exit status: 0 if there are no others.
 
 Limits are processor time, so that a busy machine makes no difference.  Interrupted or terminated, it ends
@@ -58,13 +61,15 @@ import sys
 import tempfile
 import time
 
+import fuzz_compositions
 import fuzz_inputs
+import fuzz_oracles
 import fuzz_scenes
 
 ROOT = fuzz_inputs.ROOT
 BUILD = os.path.abspath(os.environ.get("MPM_BUILD_DIR") or os.path.join(ROOT, "build"))
 KNOWN = os.path.join(os.path.dirname(os.path.abspath(__file__)), "fuzz_known.txt")
-FAILURES = ("crash", "hang", "nan", "mass", "momentum", "ranks", "restart")
+FAILURES = ("crash", "hang", "nan", "mass", "momentum", "ranks", "restart", "check", "whole", "units")
 
 # all processes are on one machine: see unittest/CMakeLists.txt
 ENVIRONMENT = {
@@ -338,7 +343,8 @@ def write_failure(options, name, files, command):
 
 
 def command_of(seed, kind):
-    return "tools/fuzz.py --seed %d --inputs %d --scenes %d" % (seed, kind == "input", kind == "scene")
+    return "tools/fuzz.py --seed %d --inputs %d --scenes %d --compositions %d" % (
+        seed, kind == "input", kind == "scene", kind == "composition")
 
 
 class Report:
@@ -348,7 +354,8 @@ class Report:
         self.machine, self.options = machine, options
         self.counts, self.known, self.failures = {}, known_failures(), 0
         self.start = self.told = time.time()
-        self.done, self.new = {"input": set(), "scene": set()}, {"input": 0, "scene": 0}
+        kinds = ("input", "scene", "composition")
+        self.done, self.new = {kind: set() for kind in kinds}, {kind: 0 for kind in kinds}
         self.open_record("state " + state)
 
     def open_record(self, state):
@@ -369,7 +376,7 @@ class Report:
                 self.count(kind, int(seed), verdict)
 
     def seeds(self, kind):
-        count = self.options.inputs if kind == "input" else self.options.scenes
+        count = getattr(self.options, kind + "s")
         return range(self.options.seed, self.options.seed + count)
 
     def wanted(self, kind, seed):
@@ -424,6 +431,19 @@ class Report:
                             "output": done.output[-100000:]}), command_of(seed, "scene"))
         print("%s: scene %d: %s: %s\n    %s" % (verdict, seed, folder, what, done.message()), flush=True)
 
+    def composition(self, seed, verdict, scene, oracle, what, text, done):
+        """A failure comes with the input that was run last, and a small one."""
+        reason = is_known(self.known, verdict, text + "\nOUTPUT\n" + done.output[-20000:], "")
+        self.add("composition", seed, "known" if reason and verdict in FAILURES else verdict)
+        if verdict not in FAILURES or reason:
+            return
+        skip = fuzz_oracles.smaller(self.machine, scene, oracle, verdict)
+        folder = write_failure(self.options, "composition-%d" % seed, dict(
+            scene.files, **{"in.first": scene.first(), "in.last": text, "output": done.output[-100000:],
+                            "small.in": fuzz_oracles.without(scene.first(), skip)}), command_of(seed, "composition"))
+        print("%s: composition %d (%s; %s): %s\n    %s" % (
+            verdict, seed, " ".join(scene.names), oracle, folder, what), flush=True)
+
     def end(self):
         for kind, counts in self.counts.items():
             print("%d %ss: %s" % (sum(counts.values()), kind, ", ".join(
@@ -472,6 +492,8 @@ def try_all(machine, options):
             report.input(seed, *found)
     for seed, result in each("scene", lambda seed: try_scene(machine, seed)):
         report.scene(seed, *result)
+    for seed, result in each("composition", lambda seed: fuzz_oracles.try_composition(machine, seed)):
+        report.composition(seed, *result)
     return report.end()
 
 
@@ -495,6 +517,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--inputs", type=int, default=200)
     parser.add_argument("--scenes", type=int, default=20)
+    parser.add_argument("--compositions", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=int(os.environ.get("MPM_JOBS") or os.cpu_count()))
     parser.add_argument("--out", default=os.path.join(BUILD, "fuzz"))
@@ -510,6 +533,7 @@ def main():
     options = parser.parse_args()
     if options.show:
         print(fuzz_inputs.Mutator().make(random.Random("input %d" % options.seed)).text() if options.inputs
+              else fuzz_compositions.Composition(options.seed).first() if options.compositions
               else fuzz_scenes.Scene(options.seed).first())
         return 0
     machine = Machine(options)

@@ -663,6 +663,35 @@ TEST(SurfaceInNodes, IsTheSameOnRanks)
   EXPECT_NEAR(heat_in(run.parallel) / heat_in(run.serial), 1.0, 1e-11);
 }
 
+// two blocks touch and stay in planes of nodes, where round-off leaves gradients at nodes without
+// capacity: these have no part in the response, without bounds, of a surface to its heat
+TEST(SurfaceInNodes, RespondsByNodesWithHeat)
+{
+  const std::string law =
+      " mpm/material density 1000 linear 1e7 0.3 thermal conducting 100 300 5e4";
+  const std::string scene = space("si", "f p f", "0 0.12 0 0.08 0 0.07", 2, 0.005) +
+      "group one type 1\ngroup two type 2\n"
+      "fix a one mpm 0.01 shape cpdi2 transfer flip 1.0 scheme musl\n"
+      "fix b two mpm 0.01 shape cpdi2 transfer flip 1.0 scheme musl\n"
+      "region a block 0.01 0.05 0.02 0.06 0.01 0.05\ncreate_points 1 region a ppc 2 fix a\n"
+      "region b block 0.05 0.09 0.03 0.06 0.01 0.04\ncreate_points 2 region b ppc 2 fix a\n"
+      "group one type 1\ngroup two type 2\nvelocity one set 3 1 0\nvelocity two set -3 1 0\n"
+      "fix ma one" +
+      law + "\nfix mb two" + law +
+      "\nfix c all mpm/contact a b law frictionless\n"
+      "fix heat all mpm/heat surface convection 1e6 280 every 1\ntimestep 1.68e-5\n";
+  double power[4] = {0.0}, alone = 0.0;
+  Scene run(scene + "run 0\n"), serial(scene + "run 0\n", MPI_COMM_SELF);
+  for (int k = 1; k < 4; k++) {
+    run.commands("run 1\n");
+    serial.commands("run 1\n");
+    power[k] = run.fix_vector("heat", 10)[9];
+    alone = serial.fix_vector("heat", 10)[9];
+    EXPECT_NEAR(power[k] / alone, 1.0, 1e-6) << k;
+  }
+  EXPECT_NEAR(measured("step 2", 2.0 * power[2] / (power[1] + power[3])), 1.0, 0.01);
+}
+
 // the area of a disk is the same wherever it crosses periodic faces, on any number of ranks
 TEST(Ranks, AgreeAcrossPeriodicFaces)
 {

@@ -974,6 +974,10 @@ SERIAL_TEST(Mixture, RefusesBadInput)
                   {fix + "w s 2.5 0.01", "are no fluid"},
                   {fix + "s w 2.5 0.01\nfix two all mpm/mixture s w 2.5 0.01", "in common"},
                   {fix + "s w 2.5 0.01\nfix c all mpm/contact s w", "keeps the water out"},
+                  {fix +
+                       "s w 2.5 0.01\npair_style mpm/penalty\npair_coeff * * 0.0\n"
+                       "pair_coeff 1 2 1.0",
+                   "pair_coeff with modulus 0"},
                   {fix + "s w 2.5 0.01\nfix p all mpm/pore 200 1 10 soil ms 0.5 constant 1.0",
                    "fix mpm/pore p has water in the pores of ms already"},
                   {fix + "s w 1.0 0.01", "that of dry soil"}},

@@ -440,6 +440,8 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"fix one all mpm/refine a c" + run, "not the ID of a fix mpm"},
                   {fix + "\nfix two all mpm/refine a b" + run, "in common"},
                   {fix + "\nfix c all mpm/contact a b" + run, "leave one of them out"},
+                  {fix + "\npair_style mpm/penalty\npair_coeff * * 0.0\npair_coeff 1 2 1.0" + run,
+                   "pair_coeff with modulus 0"},
                   {fix + "\nfix i all mpm/implicit static" + run, "use explicit steps"}});
   const std::string apart = head +
       "region m block 6 8 0 8 INF INF\nfix a a mpm 1.0\nfix b b mpm 0.5 origin 0.25 0.25\n"

@@ -48,6 +48,15 @@ def test_many_inputs_with_mistakes_and_scenes():
     fuzz(500, 40, 4)
 
 
+def test_compositions():
+    # few of them: another 5000 take hours
+    with tempfile.TemporaryDirectory() as folder:
+        result = mt.run([sys.executable, FUZZ, "--inputs", "0", "--scenes", "0", "--compositions", "6", "--seed", "1",
+                         "--jobs", "1", "--out", folder], timeout=1800)
+    mt.ok(result)
+    assert re.search(r"^6 compositions: ", result.output, re.M), result.output
+
+
 def write_program(path, command):
     with open(path, "w", encoding="ascii") as file:
         file.write("#!/bin/sh\n%s\n" % command)

@@ -378,6 +378,19 @@ void PairMPMPenalty::init_style()
   neighbor->add_request(this);
 }
 
+bool PairMPMPenalty::couples(const std::string &one, const std::string &two)
+{
+  const std::size_t nfields = fields.size(), n = atom->ntypes + 1;
+  for (std::size_t a = 0; a < nfields; a++)
+    for (std::size_t b = 0; b < nfields; b++) {
+      if (fields[a]->id() != one || fields[b]->id() != two || coupled[a * nfields + b]) continue;
+      for (int i = 1; i < (int) n; i++)
+        for (int j = 1; j < (int) n; j++)
+          if (present[a * n + i] && present[b * n + j] && coeff_of(i, j).modulus > 0.0) return true;
+    }
+  return false;
+}
+
 /** No cutoff, and no pairs in the neighbor list, for types that do not meet. */
 double PairMPMPenalty::init_one(int i, int j)
 {

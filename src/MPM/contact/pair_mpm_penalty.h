@@ -82,6 +82,9 @@ class PairMPMPenalty : public MPMPair<MPMPenaltyCoeff>, private MPMPenaltyOption
              return c.damping > 0.0;
            });
   }
+  /** Do points of the fields with these IDs repel each other? Call at init(), after that of this
+   *  style. */
+  bool couples(const std::string &, const std::string &);
   /** Call at init(), after that of this style: the dissipated energy becomes heat of the points,
    *  for fix mpm/heat. */
   void make_heat() { heats = true; }

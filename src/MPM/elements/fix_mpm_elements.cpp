@@ -180,6 +180,7 @@ void FixMPMElements::init()
                id, variables, material->id, names_of_history());
 
   internal->define(material);
+  sort_rows();    // rows of a restart file take the place of those of the mesh
   if (bending) internal->find_bending_frequency(groupbit, nodes.ids);
 
   // nodes of elements may be ghosts; elements that have stretched since need comm_modify
@@ -210,17 +211,26 @@ double FixMPMElements::largest_extent() const
 }
 
 /** Sorts rows in the order of atoms, and finds their nodes. */
-void FixMPMElements::find_nodes()
+void FixMPMElements::sort_rows()
 {
   std::vector<double> sorted;
   sorted.reserve(body->pool.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (count[i] == 0) continue;
+    const double *const r = body->row(first[i]);
+    first[i] = (double) (sorted.size() / body->stride);
+    sorted.insert(sorted.end(), r, r + (int) count[i] * body->stride);
+  }
+  body->pool.swap(sorted);
+}
+
+void FixMPMElements::find_nodes()
+{
+  sort_rows();
   body->nodes.clear();
   body->owner.clear();
   for (int i = 0; i < atom->nlocal; i++) {
-    if (count[i] == 0) continue;
     const double *r = body->row(first[i]);
-    first[i] = (double) body->nodes.size();
-    sorted.insert(sorted.end(), r, r + (int) count[i] * body->stride);
     for (int k = 0; k < count[i]; k++, r += body->stride) {
       body->nodes.emplace_back();
       body->owner.push_back(i);
@@ -238,7 +248,6 @@ void FixMPMElements::find_nodes()
       }
     }
   }
-  body->pool.swap(sorted);
 }
 
 /** Forces of the elements on their nodes, and means of their state for output. */
@@ -400,7 +409,7 @@ double FixMPMElements::memory_usage()
       internal->memory_usage();
 }
 
-/** Elements move with their atom. find_nodes() drops rows that no atom owns any more. */
+/** Elements move with their atom. sort_rows() drops rows that no atom owns any more. */
 int FixMPMElements::pack_exchange(int i, double *buf)
 {
   const int n = (int) count[i] * body->stride;

@@ -171,6 +171,8 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
 
   std::string names_of_history() const;
   void make_elements(const MPM_NS::Mesh &);
+  /** Puts rows in the order of the atoms that own them, without those that none owns. */
+  void sort_rows();
   void find_nodes();
   void compute(bool starting);
   void give_means_to_nodes();

@@ -284,15 +284,20 @@ double MPMHeatBody::conducting(int64_t node) const
 bool MPMHeatBody::find_response(Line &line) const
 {
   line.response = line.conducting = 0.0;
-  if (conduction->has_idle()) {
-    double awake = 0.0;
-    for (int k = 0; k < line.n; k++) {
-      if (line.weight[k] > 0.0 && conduction->is_idle(line.node[k])) line.weight[k] = 0.0;
-      awake += line.weight[k];
+  // round-off can leave a gradient at a node that has no capacity, next to a surface in its plane
+  const auto &capacity = conduction->node_capacity();
+  double awake = 0.0;
+  bool idle = false;
+  for (int k = 0; k < line.n; k++) {
+    if (!(line.weight[k] > 0.0)) continue;
+    if (!(capacity[line.node[k]] > 0.0) || conduction->is_idle(line.node[k])) {
+      line.weight[k] = 0.0;
+      idle = true;
     }
-    if (!(awake > LEAST)) return false;
-    for (int k = 0; k < line.n; k++) line.weight[k] /= awake;
+    awake += line.weight[k];
   }
+  if (!(awake > LEAST)) return false;
+  for (int k = 0; idle && k < line.n; k++) line.weight[k] /= awake;
   for (int k = 0; k < line.n; k++)
     if (line.weight[k] > 0.0) line.conducting += line.weight[k] *= conducting(line.node[k]);
   if (!(line.conducting > LEAST)) return false;

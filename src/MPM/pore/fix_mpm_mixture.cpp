@@ -12,6 +12,7 @@
 #include "base/mpm_options.h"
 #include "comm.h"
 #include "contact/fix_mpm_contact.h"
+#include "contact/pair_mpm_penalty.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
@@ -132,6 +133,12 @@ void FixMPMMixture::init_action()
           "Fix mpm/mixture {}: fix mpm/contact {} keeps the water out of the soil: leave one "
           "of these fields out there",
           id, other->id);
+  auto *const penalty = dynamic_cast<PairMPMPenalty *>(force->pair_match("mpm/penalty", 0));
+  if (penalty && penalty->couples(options.soil_id, options.water_id))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/mixture {}: pair style mpm/penalty keeps the water out of the soil: give "
+               "the types of {} and {} a pair_coeff with modulus 0",
+               id, options.soil_id, options.water_id);
   for (auto *other : modify->get_fix_by_style("^mpm/pore$")) {
     const auto *pore = dynamic_cast<FixMPMPore *>(other);
     for (const auto *material : mixture.soil.field->materials)

@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "contact/fix_mpm_contact.h"
 #include "contact/fix_mpm_rigid.h"
+#include "contact/pair_mpm_penalty.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
@@ -19,6 +20,7 @@
 #include "field/mpm_interfaces.h"
 #include "field/mpm_point_map.h"
 #include "field/mpm_stencil.h"
+#include "force.h"
 #include "implicit/fix_mpm_relax.h"
 #include "loads/fix_mpm_dashpot.h"
 #include "modify.h"
@@ -166,6 +168,14 @@ void FixMPMRefine::check_others(const MPMPlan &plan) const
                  "rim of a lattice have: {}",
                  id, ifix->style, ifix->id, in_place_of(ifix->style));
   }
+  auto *const penalty = dynamic_cast<PairMPMPenalty *>(force->pair_match("mpm/penalty", 0));
+  for (const auto &a : ids)
+    for (const auto &b : ids)
+      if (penalty && penalty->couples(a, b))
+        error->all(FLERR, Error::NOLASTLINE,
+                   "Fix mpm/refine {}: the fields {} and {} are one body, which pair style "
+                   "mpm/penalty takes for two: give their types a pair_coeff with modulus 0",
+                   id, a, b);
   for (auto *physics : plan.physics) {
     auto *ifix = dynamic_cast<Fix *>(physics);
     if (!dynamic_cast<MPMLoad *>(physics) && !dynamic_cast<FixMPMRefine *>(physics) &&
