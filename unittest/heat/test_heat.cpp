@@ -604,6 +604,14 @@ SERIAL_TEST(BadInput, IsRefused)
   expect_error(replaced(plain, "conducting 1 0 1", "conducting 1 0") + "run 1\n", "K");
 }
 
+// a surface that is suddenly warm, in a few steps of very many explicit limits
+SERIAL_PARAMETER_TEST(SuddenHeat, InLongSteps, int, Values(1, 2, 4))
+{
+  const double error = error_of_wall(
+      bar(40, "xlo temperature 1.0 xhi temperature 0.0 every 1 stages 200"), 0.1 / GetParam());
+  EXPECT_LT(measured(strprintf("%d steps", GetParam()), error), 0.01);
+}
+
 // nodes of finite elements have no temperature that heat could change
 SERIAL_TEST(Elements, TakeNoPart)
 {

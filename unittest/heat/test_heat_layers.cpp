@@ -253,65 +253,72 @@ TEST(Ranks, Agree)
   EXPECT_NEAR(heat_in(run.parallel) / heat_in(run.serial), 1.0, 1e-11);
 }
 
-/** Two bars of aluminum at 300 K and of a light material at 100 K, 10 mm long, that touch at x =
- *  10 mm. more: options of fix mpm; heat: of fix mpm/heat. */
-static std::string touching_bars(double h, const std::string &more = "",
-                                 const std::string &heat = "")
-{
-  return plane("si", "f p", strprintf("0 0.02 0 %.17g", 8 * h), 2, 0.5 * h) +
-      "region r1 block 0 0.01 INF INF INF INF\nregion r2 block 0.01 0.02 INF INF INF INF\n" +
-      strprintf("create_points 1 region r1 spacing %.17g\ncreate_points 2 region r2 spacing "
-                "%.17g\ngroup g1 type 1\ngroup g2 type 2\nfix grid all mpm %.17g ",
-                0.5 * h, 0.5 * h, h) +
-      more +
-      "\nfix m1 g1 mpm/material density 1e4 eos linear 1e-5 thermal conducting 903 300 237\n"
-      "fix m2 g2 mpm/material density 1e3 eos linear 1e-5 thermal conducting 603 100 23.7\n"
-      "fix heat all mpm/heat " +
-      heat + "\n";
-}
+/** Two bars 10 mm long that touch at x = 10 mm, at 300 and 100 K: the first one of aluminum, the
+ *  other one of a light material. */
+struct TouchingBars {
+  double h;
+  std::string grid = "", heat = "";    // options of fix mpm and fix mpm/heat
+  std::array<double, 2> k = {237, 23.7}, C = {9.03e6, 6.03e5};
+  bool fields = false;    // has each bar a field of its own?
 
-/** Temperature there after a time (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids (1959),
- *  2.15): the interface has the mean by effusivities. */
-static double of_touching_bars(double x, double t)
-{
-  const double k[2] = {237, 23.7}, C[2] = {9.03e6, 6.03e5}, T[2] = {300, 100};
-  const double b[2] = {std::sqrt(k[0] * C[0]), std::sqrt(k[1] * C[1])},
-               at_interface = (b[0] * T[0] + b[1] * T[1]) / (b[0] + b[1]);
-  const int side = x > 0.01;
-  return at_interface +
-      (T[side] - at_interface) *
-      std::erf(std::fabs(x - 0.01) / std::sqrt(4.0 * k[side] / C[side] * t));
-}
-
-/** Largest errors of points: of all, and of those three cells from the interface. */
-static std::array<double, 2> errors_of_touching_bars(double h, const std::string &more,
-                                                     const std::string &heat)
-{
-  Scene run(touching_bars(h, more, heat));
-  Warm bars[2] = {Warm(run, "m1"), Warm(run, "m2")};
-  const double before = bars[0].heat() + bars[1].heat();
-  run_to(run, 0.1, h);
-  EXPECT_NEAR((bars[0].heat() + bars[1].heat()) / before, 1.0, 1e-13);
-  std::array<double, 2> most = {0.0, 0.0};
-  for (int i = 0; i < run.n(); i++) {
-    const double x = run.x()[i][0],
-                 error = std::fabs(bars[x > 0.01].T(i) - of_touching_bars(x, 0.1));
-    most[0] = std::max(most[0], error);
-    if (std::fabs(std::fabs(x - 0.01) / h - 3.0) < 0.5) most[1] = std::max(most[1], error);
+  std::string text() const
+  {
+    const auto mpm = strprintf(" mpm %.17g ", h) + grid + "\n";
+    return plane("si", "f p", strprintf("0 0.02 0 %.17g", 8 * h), 2, 0.5 * h) +
+        "region r1 block 0 0.01 INF INF INF INF\nregion r2 block 0.01 0.02 INF INF INF INF\n" +
+        strprintf("create_points 1 region r1 spacing %.17g\ncreate_points 2 region r2 spacing "
+                  "%.17g\ngroup g1 type 1\ngroup g2 type 2\n",
+                  0.5 * h, 0.5 * h) +
+        (fields ? "fix A g1" + mpm + "fix B g2" + mpm + "fix touch all mpm/contact A B law stick\n"
+                : "fix grid all" + mpm) +
+        strprintf("fix m1 g1 mpm/material density 1e4 eos linear 1e-5 thermal conducting %.17g 300 "
+                  "%.17g\nfix m2 g2 mpm/material density 1e3 eos linear 1e-5 thermal conducting "
+                  "%.17g 100 %.17g\n",
+                  1e-4 * C[0], k[0], 1e-3 * C[1], k[1]) +
+        "fix heat all mpm/heat " + heat +
+        (fields ? strprintf(" contact A B conductance %.17g\n", 1000 * k[0] / h) : "\n");
   }
-  return most;
-}
+  /** Temperature there after a time (H.S. Carslaw, J.C. Jaeger, Conduction of Heat in Solids
+   *  (1959), 2.15): the interface has the mean by effusivities. */
+  double exact(double x, double t) const
+  {
+    const double T[2] = {300, 100};
+    const double b[2] = {std::sqrt(k[0] * C[0]), std::sqrt(k[1] * C[1])},
+                 at_interface = (b[0] * T[0] + b[1] * T[1]) / (b[0] + b[1]);
+    const int side = x > 0.01;
+    return at_interface +
+        (T[side] - at_interface) *
+        std::erf(std::fabs(x - 0.01) / std::sqrt(4.0 * k[side] / C[side] * t));
+  }
+  /** Largest errors of points at a time, in steps of at most dt: of all, and of those three cells
+   *  from the interface. Heat is kept. */
+  std::array<double, 2> errors(double t, double dt) const
+  {
+    Scene run(text());
+    Warm bars[2] = {Warm(run, "m1"), Warm(run, "m2")};
+    const double before = bars[0].heat() + bars[1].heat();
+    run_to(run, t, dt);
+    EXPECT_NEAR((bars[0].heat() + bars[1].heat()) / before, 1.0, 1e-13);
+    std::array<double, 2> most = {0.0, 0.0};
+    for (int i = 0; i < run.n(); i++) {
+      const double x = run.x()[i][0], error = std::fabs(bars[x > 0.01].T(i) - exact(x, t));
+      most[0] = std::max(most[0], error);
+      if (std::fabs(std::fabs(x - 0.01) / h - 3.0) < 0.5) most[1] = std::max(most[1], error);
+    }
+    return most;
+  }
+};
 
 // points next to the interface take its temperature at the rate of their own material. In the total
 // frame there are no means of conductivities
-SERIAL_PARAMETER_TEST(TouchingBars, HaveTheTemperatureOfTheInterface, const char *,
+SERIAL_PARAMETER_TEST(Touching, HaveTheTemperatureOfTheInterface, const char *,
                       Values("", "shape cubic", "frame total"))
 {
   const bool total = strcmp(GetParam(), "frame total") == 0;
   for (const char *heat : {"", "time sdirk2"})
     for (const double h : {1e-3, 5e-4}) {
       const bool coarse = h > 6e-4;
-      const auto error = errors_of_touching_bars(h, GetParam(), heat);
+      const auto error = TouchingBars{h, GetParam(), heat}.errors(0.1, h);
       const auto name = strprintf("%s %s, %g mm: ", GetParam(), heat, 1e3 * h);
       EXPECT_LT(measured(name + "all", error[0]), total ? 4.5 : coarse ? 17.0 : 6.5);
       EXPECT_LT(measured(name + "at 3 cells", error[1]), total ? 4.5 : coarse ? 2.4 : 0.75);
@@ -320,7 +327,7 @@ SERIAL_PARAMETER_TEST(TouchingBars, HaveTheTemperatureOfTheInterface, const char
 
 // what follows fast smooths the kink of a steady temperature: not much in short steps, either, and
 // for capacities of very different size a warning tells what does not follow
-SERIAL_TEST(TouchingBars, SteadyFlowInShortSteps)
+SERIAL_TEST(Touching, SteadyFlowInShortSteps)
 {
   for (const double capacity : {15.0, 100.0}) {
     const auto scene = plate(12,
@@ -328,7 +335,7 @@ SERIAL_TEST(TouchingBars, SteadyFlowInShortSteps)
                               {"block 0.25 0.5 INF INF INF INF", 1.0},
                               {"block 0.5 1 INF INF INF INF", 10.0, capacity}},
                              4.0 / 12, 0.0);
-    EXPECT_EQ(lines_that_say(scene + "timestep 1e-4\nrun 0\n", "heat capacities").size(),
+    EXPECT_EQ(lines_that_say(scene + "timestep 1e-4\nrun 0\n", "conductance of 1e+05").size(),
               capacity > 16 ? 1u : 0u);
     if (capacity > 16) continue;
     Scene run(scene);
@@ -337,10 +344,49 @@ SERIAL_TEST(TouchingBars, SteadyFlowInShortSteps)
   }
 }
 
-// the same on several ranks, and on two lattices
-TEST(TouchingBars, OnRanks)
+// what the warning advises: with a field for each material, capacities may have any ratio, and the
+// interface any place between nodes, in short steps and in the steady state, too
+SERIAL_TEST(Touching, BodiesOfTheirOwnFields)
 {
-  OnRanks run(touching_bars(1e-3, "", "xlo temperature 300 xhi temperature 300") +
+  constexpr double h = 1e-3;
+  for (const double ratio : {16.0, 100.0, 1000.0})
+    for (const double slower : {10.0, ratio})
+      for (const double shift : {0.0, 0.3}) {
+        TouchingBars bars{h, strprintf("origin %.17g 0", -shift * h)};
+        bars.k[1] = bars.k[0] / slower;
+        bars.C[1] = bars.C[0] / ratio;
+        bars.fields = true;
+        const double D = bars.k[1] / bars.C[1];
+        const auto error = bars.errors(4e-6 / D, 0.1 * h * h / std::max(D, bars.k[0] / bars.C[0]));
+        const auto name = strprintf("capacities %g, conductivities %g, %g: ", ratio, slower, shift);
+        EXPECT_LT(measured(name + "all", error[0]), 0.01 * 200);
+        EXPECT_LT(measured(name + "at 3 cells", error[1]), 0.007 * 200);
+      }
+}
+SERIAL_TEST(Touching, SteadyFlowThroughALayerOfItsOwnField)
+{
+  for (const double ratio : {100.0, 1000.0}) {
+    auto scene = plate(12,
+                       {{"block 0 0.25 INF INF INF INF", ratio, ratio},
+                        {"block 0.25 0.5 INF INF INF INF", 1.0},
+                        {"block 0.5 1 INF INF INF INF", ratio, ratio}},
+                       4.0 / 12, 0.3);
+    const auto at = scene.find("fix grid all");
+    const auto options = scene.substr(at + 12, scene.find('\n', at) - at - 12);
+    scene.replace(at, 12 + options.size(),
+                  "group outer union g1 g3\nfix A outer" + options + "\nfix B g2" + options +
+                      "\nfix touch all mpm/contact A B law stick");
+    Scene run(replaced(scene, "stages 100",
+                       strprintf("stages 100 contact A B conductance %g", 12000 * ratio)));
+    const double q = power(run, 0.25 / 144, 4.0) * 12 / 4.0 * (0.75 / ratio + 0.25);
+    EXPECT_NEAR(measured(strprintf("%g", ratio), q), 1.0, 1e-3);
+  }
+}
+
+// the same on several ranks, and on two lattices
+TEST(Touching, OnRanks)
+{
+  OnRanks run(TouchingBars{1e-3, "", "xlo temperature 300 xhi temperature 300"}.text() +
                   "timestep 0.001\n",
               "run 50\n");
   EXPECT_LT(run.difference(), 1e-13);
@@ -352,10 +398,11 @@ TEST(TouchingBars, OnRanks)
   }
 }
 
-SERIAL_TEST(TouchingBars, OnTwoLattices)
+SERIAL_TEST(Touching, OnTwoLattices)
 {
   const double h = 5e-4;
-  const auto whole = touching_bars(h);
+  const TouchingBars touching{h};
+  const auto whole = touching.text();
   const auto at = whole.find("fix grid");
   // the interface is on the finer lattice
   Scene run(whole.substr(0, at) +
@@ -372,7 +419,7 @@ SERIAL_TEST(TouchingBars, OnTwoLattices)
   double most = 0.0;
   for (int i = 0; i < run.n(); i++) {
     const double x = run.x()[i][0];
-    most = std::max(most, std::fabs(bars[x > 0.01].T(i) - of_touching_bars(x, 0.1)));
+    most = std::max(most, std::fabs(bars[x > 0.01].T(i) - touching.exact(x, 0.1)));
   }
   EXPECT_LT(measured("all", most), 10.0);
 }

@@ -644,3 +644,57 @@ TEST(Gas, OfAnotherSpecificHeatIsSaid)
   EXPECT_EQ(said(3.5, 1.0), 1u);
   EXPECT_EQ(said(3.0, 0.0), 1u);
 }
+
+/** Stress at the distance x from the surface of a half space that is at the temperature 1 from t = 0
+ *  on, in units in which density, modulus, diffusivity, and the stress of a unit of temperature are
+ *  1 (V.I. Danilovskaya, Prikl. Mat. Mekh. 14 (1950) 316). */
+static double thermal_shock(double x, double t)
+{
+  const double s = std::sqrt(t), behind = t > x ? std::exp(t - x) : 0.0;
+  return behind -
+      0.5 *
+      (std::exp(t + x) * std::erfc(0.5 * x / s + s) + std::exp(t - x) * std::erfc(0.5 * x / s - s));
+}
+
+/** The greatest pressure at x = 1 before the front passes there, by finite differences in steps of
+ *  half of the spacing, with the exact temperature. */
+static double thermal_shock_by_differences(double h)
+{
+  const int n = (int) std::lround(2.0 / h), at = n / 2;
+  std::vector<double> v(n + 1, 0.0), strain(n, 0.0), stress(n, 0.0);
+  double most = 0.0;
+  for (int step = 1; step * 0.5 * h < 1.1; step++) {
+    for (int i = 0; i < n; i++) v[i] += 0.5 * (i ? stress[i] - stress[i - 1] : 2.0 * stress[0]);
+    for (int i = 0; i < n; i++) {
+      strain[i] += 0.5 * (v[i + 1] - v[i]);
+      stress[i] = strain[i] - std::erfc(0.5 * (i + 0.5) * h / std::sqrt(step * 0.5 * h));
+    }
+    most = std::max(most, -0.5 * (stress[at - 1] + stress[at]));
+  }
+  return most;
+}
+
+// heat is as fast as waves: steps are 150 explicit limits of conduction long, and the surface must
+// be warm in the first of them. Points are as good as finite differences
+SERIAL_PARAMETER_TEST(HalfSpace, ThermalShock, const char *, Values("every 1", "every auto"))
+{
+  const double exact = -thermal_shock(1.0, 1.0);
+  EXPECT_NEAR(exact, 0.885, 1e-3);
+  constexpr double h = 0.02;
+  Scene run(plane("lj", "f p", strprintf("0 2.08 0 %.17g", 4 * h), 1, 0.5 * h) +
+            strprintf("create_points 1 box spacing %.17g\nfix grid all mpm %.17g\n", 0.5 * h, h) +
+            "fix m all mpm/material density 1 linear 1 0 thermal conducting 1 0 1 expansion 1e-4\n"
+            "fix heat all mpm/heat xlo temperature 1 " +
+            GetParam() + "\nfix far all mpm/boundary xhi slip\nfix dt all mpm/dt 0.5\n");
+  double most = 0.0;
+  while (run.time() < 1.1) {
+    run.commands("run 1\n");
+    const double mean = mean_of(run, [&](int i) {
+      return std::fabs(run.x()[i][0] - 1.0) < 0.5 * h ? stress_xx(run, i) : NAN;
+    });
+    most = std::max(most, -1e4 * mean);
+  }
+  measured("finite differences", thermal_shock_by_differences(h));
+  EXPECT_GT(measured("points", most), thermal_shock_by_differences(h));
+  EXPECT_LT(most, exact);
+}

@@ -330,9 +330,10 @@ int MPMSuperStep::count(double dt, double limit, int most_stages)
   return most_stages + 1;
 }
 
-void MPMSuperStep::advance(int n, double dt, const std::function<void()> &find_rates)
+void MPMSuperStep::advance(int n, double dt, const std::function<void()> &find_rates,
+                           bool rates_known)
 {
-  find_rates();
+  if (!rates_known) find_rates();
   if (n == 1) {
     for (auto &list : lists)
       for (std::size_t k = 0; k < list.y.size(); k++) list.y[k] += dt * list.rate[k];
@@ -358,6 +359,18 @@ void MPMSuperStep::advance(int n, double dt, const std::function<void()> &find_r
             more * list.rate[k] + less * list.first_rate[k];
         list.last[k] = now;
       }
+  }
+}
+
+void MPMSuperStep::advance_from_jump(double dt, double limit,
+                                     const std::function<void()> &find_rates)
+{
+  double part = dt, left = dt;
+  while (part > limit) part *= 0.5;
+  for (bool first = true; left > 0.5 * part; first = false) {
+    advance(count(part, limit, std::numeric_limits<int>::max()), part, find_rates, first);
+    left -= part;
+    if (!first) part *= 2.0;
   }
 }
 

@@ -23,6 +23,11 @@
    surface or a contact is faster than conduction across a cell, it follows with the rate of
    conduction, as in long steps (MPMHeatFaces::limit()).
 
+   A step of many explicit limits in which temperatures change by more than their range begins with
+   short parts (MPMSuperStep::advance_from_jump()). Without these a body whose surface is suddenly
+   at another temperature takes only half of the fast changes in each step: the peak of the stress
+   wave of a heated half space was 0.83 of the exact one, not 0.88, with steps of 150 limits.
+
    Conduction is in each step if something varies from step to step, such as variables and regions
    that move, if anything is implicit, or if others give heat in each step.
 
@@ -128,6 +133,43 @@ double MPMHeatFlow::longest_wait() const
   if (range > ROUND_OFF * std::max(fabs(all.highest), fabs(all.less)) && all.change > 0.0)
     t = std::min(t, LUMP * range / all.change * dt_last);
   return t;
+}
+
+/** Would temperatures at their present rates differ more at the end of the step than now? They jump
+ *  then, as when a surface is suddenly at another temperature. Collective. */
+bool MPMHeatFlow::jumps() const
+{
+  constexpr int N = 4;    // temperatures and rates, and minus these
+  double mine[N], all[N];
+  std::fill_n(mine, N, -std::numeric_limits<double>::max());
+  for (const auto &field : fields) {
+    if (!field->conducts()) continue;
+    const auto &capacity = field->node_capacity();
+    for (std::size_t k = 0; k < capacity.size(); k++) {
+      if (!(capacity[k] > 0.0)) continue;
+      const double T = field->temperature[k], rate = field->rate[k];
+      mine[0] = std::max(mine[0], T);
+      mine[1] = std::max(mine[1], -T);
+      mine[2] = std::max(mine[2], rate);
+      mine[3] = std::max(mine[3], -rate);
+    }
+  }
+  MPI_Allreduce(mine, all, N, MPI_DOUBLE, MPI_MAX, world);
+  const double range = all[0] + all[1], round_off = ROUND_OFF * std::max(all[0], all[1]);
+  return dt_last * (all[2] + all[3]) > range + round_off;
+}
+
+/** One explicit step of all temperatures. */
+void MPMHeatFlow::advance(int stages)
+{
+  const auto rates = [this]() {
+    find_rates();
+  };
+  find_rates();
+  if (stages > 1 && jumps())
+    steps.advance_from_jump(dt_last, limit, rates);
+  else
+    steps.advance(stages, dt_last, rates, true);
 }
 
 double MPMConduction::keep_given()

@@ -243,7 +243,7 @@ int MPMHeatFlow::count_stages()
   fastest = greatest;
   if (solver) return 0;
 
-  const double limit = MPMSuperStep::explicit_limit(greatest);
+  limit = MPMSuperStep::explicit_limit(greatest);
   const int stages = MPMSuperStep::count(dt, limit, options.most_stages);
   if (stages > options.most_stages)
     error->all(FLERR, Error::NOLASTLINE,
@@ -406,9 +406,7 @@ void MPMHeatFlow::conduct()
   if (solver)
     solve();
   else
-    steps.advance(stages, dt_last, [this]() {
-      find_rates();
-    });
+    advance(stages);
   let_faster_points_go();
   for (auto &field : fields) {
     if (field->conducts()) totals.got += field->nodes_to_points(gradients);

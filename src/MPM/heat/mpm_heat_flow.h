@@ -140,6 +140,7 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   std::unique_ptr<MPMDiffusionSolver> solver;
   std::vector<MPMConduction *> parts;    // fields of the solver in this step
   double fastest = 0.0;                  // bound of all rates, including exchange
+  double limit = 0.0;                    // explicit limit of this step [time]
   enum { STEPS, NEWTON, LINEAR, NTOTAL };
   double iterations[NTOTAL] = {};    // of this run
   // heat of the last conduction, and power in a stage of it, this rank's share; entries: faces,
@@ -185,6 +186,8 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   void each_term(int part, double dt, const Term &) override;
   void let_faster_points_go();
   void solve();
+  bool jumps() const;
+  void advance(int stages);
 };
 
 }    // namespace LAMMPS_NS
