@@ -469,7 +469,7 @@ TEST(RigidBody, RefusesMistakes)
        {"fix t all mpm/rigid turned density 2.0 slip", "at rest and with side in"},
        {fix + "stick friction 0.1", "friction is for slip and separate"},
        {fix + "slip friction -0.1", "must not be negative: -0.1"},
-       {fix + "slip restitution 1.5", "restitution must be from 0 to 1: 1.5"},
+       {fix + "slip restitution 1.5", "restitution must be within 0 and 1: 1.5"},
        {fix + "slip hold w", "one or more of x y z rx ry rz"},
        {fix + "slip velocity 1 0 0 hold x", "cannot hold x"},
        {fix + "slip sharp", "Unknown fix mpm/rigid keyword: sharp"},
