@@ -318,11 +318,11 @@ void FixMPMContact::count(const MPMContacts::Node &node, const MPMContactBodies:
   bodies.book(node.record, start);
 }
 
-/** Tells fields with smooth volumes which nodes do not move as their pressure would have them. */
+/** Tells fields with smooth volumes which nodes do not move as their pressure would have them: all
+ *  that touch, as round-off decides at some nodes at rest whether they approach. */
 void FixMPMContact::bind_nodes()
 {
   for (const auto &pair : contacts.pairs) {
-    if (pair.state == MPMNodeContact::OPEN) continue;
     const auto &a = bodies[pair.a], &b = bodies[pair.b];
     if (a.field->smoothing) a.field->smoothing->bind(a.node_of(pair.ra));
     if (b.field->smoothing) b.field->smoothing->bind(b.node_of(pair.rb));

@@ -44,7 +44,7 @@ using namespace MPM_NS;
 // mean square distance of points around a node along a direction, in node spacings squared, that
 // allows for a slope; of points on a regular array it is 0.25 inside a body, and 0 of a single row
 // of them
-static constexpr double MIN_EXTENT = 1.0e-8;
+static constexpr double MIN_EXTENT = 1.0e-5;
 
 // least weight of points in the fits: where all nodes are bound, as in a thin layer on a body,
 // points count alike
