@@ -403,7 +403,7 @@ TEST(Stress, Refused)
     EXPECT_EQ(other.error(head + options + " stress gradient"), "");
   }
   Scene run;
-  expect_error(run, head + "frame total stress gradient", "frame total needs");
+  EXPECT_EQ(run.error(head + "frame total stress gradient"), "");
 }
 
 TEST(BadInput, IsRefused)

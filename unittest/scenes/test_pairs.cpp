@@ -108,7 +108,6 @@ const struct {
     {"cubic gimp cpgimp cpdi cpdi2 bernstein total", "light", "remove light"},
     {"fbar both", "light", "use scheme musl"},
     {"fmpm", "usf musl usavg", "use scheme usl, or transfer xpic"},
-    {"gradient", "total update", "needs transfer flip or pic"},
     {"bernstein total update", "contact", "let bodies meet through a pair style"},
     {"bernstein total update", "region", "use stick velocity with variables"},
     {"bernstein total update", "friction", "use fix wall/gran or a pair style"},

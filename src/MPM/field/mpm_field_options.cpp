@@ -186,9 +186,6 @@ Options MPMFieldOptions::declare(int dim)
         {stress == MLS_STRESS && !is_mls(shape, transfer), "stress",
          "mls needs shape quadratic or cubic with transfer apic or aflip: other ones have the "
          "gradients of the shape functions"},
-        {strains_by_gradient() && total, "stress",
-         "gradient with frame total needs transfer flip or pic: that of transfer apic is stress "
-         "mls"},
         {modified_edges &&
              ((shape != QUADRATIC && shape != CUBIC) || series != LUMPED || is_affine(transfer)),
          "edges",

@@ -77,8 +77,7 @@ template <int DIM, Shape SHAPE, Transfer TRANSFER, int NREAL, bool TOTAL> struct
   /** Are there fast kernels? */
   static constexpr bool fast()
   {
-    return !TOTAL ||
-        !(TRANSFER == AFLIP || TRANSFER == TPIC || has_size(SHAPE) || has_domain(SHAPE));
+    return !TOTAL || !(TRANSFER == AFLIP || has_size(SHAPE) || has_domain(SHAPE));
   }
 };
 
