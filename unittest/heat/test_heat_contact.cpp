@@ -118,7 +118,7 @@ SERIAL_PARAMETER_TEST(SteadyWithShapes, FluxAndFaces, const char *,
     Scene run(Bars{20, shift, "2.0 xlo temperature 1.0 xhi temperature 0.0 stages 64", 0.0, "", 0.0,
                    shape}
                   .text());
-    run_to(run, 5.0, 2.0 / (20 * 20));
+    run_to(run, 4.0, shape == "shape linear" ? 0.005 : 0.02);
     const double *const power = run.fix_vector("heat", 10);
     EXPECT_NEAR(measured(strprintf("%g q", shift), power[CONTACT] * 5.0) / (4.0 / 7.0), 1.0, 0.01);
     EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-6);
@@ -164,7 +164,7 @@ SERIAL_PARAMETER_TEST(Axis, HeatThroughTwoTubes, const char *,
 SERIAL_TEST(HalfSpaces, Faces)
 {
   for (const double shift : {0.0, 0.25, 0.5})
-    for (const int n : {40, 80}) {
+    for (const int n : first_of(1, {40, 80})) {
       Scene run(Bars{n, shift, strprintf("%.17g", 2.0 * std::sqrt(10.0)), 1.0}.text());
       const double before = total_heat(run);
       run_to(run, 0.01, 0.02 / (n * n));
@@ -264,7 +264,9 @@ static std::string two_squares(double offset, const std::string &right, const st
           .text(0.05);
 }
 
-// a contact that ends at regions of different temperatures: powers do not depend on the time step
+// a contact that ends at regions of different temperatures: powers do not depend on the time step.
+// A layer that takes its heat once in a step would let through h/dt, here once and five times the
+// conductance of a cell: a difference of 40 %
 SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
 {
   for (const double offset : {0.0, 0.03}) {
@@ -274,7 +276,7 @@ SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
                             "1e3 region low convection 1e3 0.0 region right temperature 2.0 "
                             "source v_q") +
                 "variable q atom 1e-2*gmask(a)\n");
-      run_to(run, 300.0, is_long ? 1.0 : 0.05);
+      run_to(run, 300.0, is_long ? 1.0 : 0.2);
       const double *const all = run.fix_vector("heat", 12);
       for (int k = 0; k < 3; k++) power[is_long][k] = measured("power", all[9 + k]);
     }
@@ -304,7 +306,7 @@ SERIAL_TEST(Edge, BetweenTwoTemperatures)
 // two halves of a square that is turned, with any offset: each is a slab with Bi = 1 at t = 0.125
 SERIAL_TEST(Turned, SlabsCool)
 {
-  for (const int n : {20, 40})
+  for (const int n : first_of(1, {20, 40}))
     for (const double offset : {0.0, 0.3}) {
       Scene run(halves(n, offset, 30));
       run_to(run, 0.125, 0.2 / (n * n));

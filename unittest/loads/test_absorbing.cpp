@@ -341,7 +341,7 @@ SERIAL_TEST(Static, CutOnThreeSides)
 TEST(Dashpot, RanksAndRestart)
 {
   // a block, through two faces of which waves leave and come in
-  for (const char *options : {"", "frame total"}) {
+  for (const char *options : first_of(1, {"", "frame total"})) {
     const auto scene = space("si", "f f f", "0 2 0 2 0 1.7", 1, 0.03) + "fix grid all mpm 0.1 " +
         options +
         "\nregion block block 0.4 1.33 0.5 1.3 0.35 1.15\ncreate_points 1 region block ppc 2\n"
@@ -763,7 +763,7 @@ SERIAL_TEST(PML, GroundStays)
 
 TEST(PML, RanksAndRestart)
 {
-  for (const char *options : {"", "frame total"}) {
+  for (const char *options : first_of(1, {"", "frame total"})) {
     const auto scene = space("si", "f f f", "0 1.2 0 1.1 0 1.2", 1, 0.03) +
         "fix grid all mpm 0.1 " + options +
         "\nregion block block 0 1.2 0 1.1 0 1\ncreate_points 1 region block ppc 2\n"
@@ -787,18 +787,19 @@ TEST(PML, RanksAndRestart)
   }
 }
 
-// A push in the corner of a body in 3d, behind three planes of symmetry: like in a larger body
+// A push in the corner of a body in 3d, behind three planes of symmetry: like in a larger body, as
+// long as waves of velocity 1 from its far walls do not come back: 14 + 22 cells are more than 32
 SERIAL_TEST(Space, LikeInALargeBody)
 {
   const auto velocities = [](int size, const std::string &far) {
-    const std::string walls = size > 20 ? "" : "fix far_walls all mpm/boundary xhi yhi zhi stick\n";
+    const std::string walls = size > 18 ? "" : "fix far_walls all mpm/boundary xhi yhi zhi stick\n";
     Scene run(space("lj", "f f f", strprintf("0 %d 0 %d 0 %d", size, size, size), 1, 0.3) +
               "fix grid all mpm 1.0\ncreate_points 1 box ppc 2\n" + MATERIAL +
               "fix walls all mpm/boundary xlo ylo zlo slip\n" + walls + far +
               "region near sphere 0 0 0 4\ngroup near region near\n"
               "velocity near set 1e-4 1e-4 5e-5\ntimestep 0.4\n");
     std::vector<double> list;
-    for (int k = 0; k < 10; k++) {
+    for (int k = 0; k < 8; k++) {
       run.commands("run 10 post no\n");
       std::map<std::array<int, 3>, std::array<double, 3>> by_place;
       for (const auto &s : run.gather())
@@ -809,7 +810,7 @@ SERIAL_TEST(Space, LikeInALargeBody)
     }
     return list;
   };
-  const auto exact = velocities(26, ""),
+  const auto exact = velocities(22, ""),
              here = velocities(18, "fix far all mpm/pml xhi 8 yhi 8 zhi 8\n");
   ASSERT_EQ(exact.size(), here.size());
   double difference = 0.0, all = 0.0;

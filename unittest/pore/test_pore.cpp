@@ -17,7 +17,7 @@ using namespace MPM_TEST;
 // Terzaghi's column at T = 0.2, drained at a face of the box or at a free surface
 SERIAL_TEST(Consolidation, Terzaghi)
 {
-  for (const double Kf : {2.2e8, 2.2e9}) {
+  for (const double Kf : first_of(1, {2.2e8, 2.2e9})) {
     double rms[2];
     for (const int n : {10, 20}) {
       const auto result = consolidate(n, "yhi pressure 0", 1.0, 0.0, Kf);
@@ -27,7 +27,8 @@ SERIAL_TEST(Consolidation, Terzaghi)
     EXPECT_LT(rms[1], 0.002);
   }
   for (const double offset : {0.0, 0.3, 0.5}) {
-    const auto result = consolidate(20, "free pressure 0", 1.2, offset, 2.2e9);
+    const auto result =
+        consolidate(20, "free pressure 0", 1.2, offset, first_of(1, {2.2e8, 2.2e9}).back());
     EXPECT_LT(measured(strprintf("free, offset %g, rms", offset), result.rms), 0.002);
     EXPECT_NEAR(measured("U", result.U) / 0.504088, 1.0, 0.01);
   }
@@ -85,7 +86,7 @@ SERIAL_TEST(Relax, KeepsSmoothPressures)
 SERIAL_TEST(Undrained, PressureIsEven)
 {
   for (const double Kf : {2.2e8, 2.2e9})
-    for (const double k : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8})
+    for (const double k : first_of(2, {1e-4, 1e-8, 1e-5, 1e-6, 1e-7}))
       EXPECT_LT(scatter_of_pressure(Kf, k, ""), 0.01);
 }
 
@@ -313,7 +314,7 @@ SERIAL_TEST(Energy, Wave)
 // flow through a column under its weight, up and down: flux, effective stress, no gain of energy
 SERIAL_TEST(Flow, SeepageChangesTheEffectiveStress)
 {
-  for (const double i : {0.5, 0.9, -0.5}) {
+  for (const double i : first_of(2, {0.9, -0.5, 0.5})) {
     Scene run(seeping_column(i, 1e-3, ""));
     expect_seepage(run, i, 1e-3);
   }
@@ -386,12 +387,14 @@ double mean_velocity(Scene &run, int d)
 SERIAL_TEST(Walls, FrictionIsThatOfGrains)
 {
   const double slower = 0.3 * 9.81 * 990.0 / 1990.0;
-  for (const auto &[wall, offset] :
-       {std::pair{"ylo slip friction 0.3", 0.0}, std::pair{"ylo slip friction 0.3", 0.3},
-        std::pair{"ylo separate friction 0.3", 0.0}, std::pair{"ylo separate friction 0.3", 0.4},
-        std::pair{"region ground separate friction 0.3", 0.0},
-        std::pair{"region ground separate friction 0.3", 0.3},
-        std::pair{"region ground slip friction 0.3", 0.2}}) {
+  for (const auto &[wall, offset] : first_of(4,
+                                             {std::pair{"ylo slip friction 0.3", 0.0},
+                                              {"ylo separate friction 0.3", 0.4},
+                                              {"region ground separate friction 0.3", 0.3},
+                                              {"region ground slip friction 0.3", 0.2},
+                                              {"ylo slip friction 0.3", 0.3},
+                                              {"ylo separate friction 0.3", 0.0},
+                                              {"region ground separate friction 0.3", 0.0}})) {
     const bool face = wall[0] == 'y';
     Scene run(above_floor(wall, 0.0, offset, "density 1990 linear 1e7 0.3",
                           face ? "0 0.4 0 1" : "0 0.4 -0.5 1") +

@@ -91,6 +91,7 @@ class RollingDisk : public ::testing::TestWithParam<double> {};
 
 TEST_P(RollingDisk, OnAFace)
 {
+  LONG_AFTER(1);
   for (const auto &incline : INCLINES) {
     if (GetParam() < 0.05 && (incline.mu == 0.1 || incline.theta == 45)) continue;
     expect_rigid(incline,
