@@ -165,3 +165,23 @@ TEST(Water, IsTheSameOnRanksAndContinued)
   const std::string scene = tank("smooth 0.5") + "velocity all set 0.5 0 NULL\ntimestep 2.0e-4\n";
   Twins(scene, 67, "neighbor 0.01 bin\n" + lines_again(scene), 45, 1.0e-9);
 }
+
+// Rates of a run must not wait for the next one that has corrections, from one look to the next.
+SERIAL_TEST(Rates, EndWithTheCorrections)
+{
+  const auto scene = [](const char *last) {
+    return plane("lj", "p p", "0 40 0 40", 1, 0.5) +
+        "fix grid all mpm 1.0\nregion disk cylinder z 20 20 6 INF INF\n"
+        "create_points 1 region disk ppc 2 jitter 0.4 4711\n"
+        "fix m all mpm/material density 1.0 eos tait 20.0 7\nvariable vx atom -0.2*(y-20)\n"
+        "velocity all set v_vx NULL NULL\ntimestep 0.05\nrun 100\n"
+        "unfix grid\nfix grid all mpm 1.0 drift 0\nrun 25\n"
+        "unfix grid\nfix grid all mpm 1.0 " +
+        last + "\nrun 20\n";
+  };
+  Scene with(scene("drift 4")), without(scene("drift 0"));
+  const auto a = with.gather(), b = without.gather();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); i++)
+    for (int d = 0; d < 2; d++) EXPECT_EQ(a[i].v[d], b[i].v[d]);
+}
