@@ -44,7 +44,7 @@ def solid(faces):
         for face in faces)
 
 
-TOOL, SCAN = solid(FACES), solid(FACES[:3])    # a tetrahedron, and one with a hole
+TOOL, SCAN, TERRAIN = solid(FACES), solid(FACES[:3]), solid(FACES[3:])    # a tetrahedron, one with a hole, one face
 VARIABLES = {"down": "equal 1.0e-3", "T": "equal 300+step", "laser": "atom 1.0e6*x", "depth": "equal -0.1*step*dt",
              "p": "equal 1.0e3*step", "damage": "atom id", "speed": "equal 0.1",
              "px": "internal 0", "py": "internal 0", "pz": "internal 0", "n": "equal 1+(v_pz>0.02)"}
@@ -410,6 +410,8 @@ def write_files(folder, scene):
         file.write(TOOL)
     with open(os.path.join(folder, "scan.stl"), "w", encoding="ascii") as file:
         file.write(SCAN)
+    with open(os.path.join(folder, "terrain.stl"), "w", encoding="ascii") as file:
+        file.write(TERRAIN)
     with open(os.path.join(folder, "hare.obj"), "w", encoding="ascii") as file:
         file.write("".join("v %d %d %d\n" % corner for corner in CORNERS) +
                    "".join("f %d %d %d\n" % tuple(k + 1 for k in face) for face in FACES))
