@@ -51,8 +51,9 @@ class SurfaceMesh {
   /** Reads a surface from the bytes of a file, see read_surface(). Positions are turned, multiplied
    *  by scale, and moved by shift. Corners closer than 1e-6 of the size of the body are merged.
    *  Throws std::runtime_error, with name in the message, if the file is invalid, if the surface is
-   *  not closed (with open: if neighbors look to different sides), or if its closed parts have no volume, intersect, or face the wrong way (inward,
-   *  except for walls of cavities). A surface that is inside out as a whole is turned. */
+   *  not closed (with open: if neighbors look to different sides), or if its closed parts have no
+   *  volume, intersect, or face the wrong way (inward, except for walls of cavities). A surface that
+   *  is inside out as a whole is turned. */
   SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift,
               const SurfaceOptions &options = SurfaceOptions());
   ~SurfaceMesh();
