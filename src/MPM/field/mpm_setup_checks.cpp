@@ -63,6 +63,7 @@ void MPMSetupChecks::run(When when, bool first)
                                    {PAIRS, true, &Checks::neighbors},
                                    {PLACES, false, &Checks::places},
                                    {PLACES, false, &Checks::locking},
+                                   {PLACES, false, &Checks::liquid_on_bodies},
                                    {LISTS, true, &Checks::lists_of_pairs}};
   for (const auto &check : list)
     if (check.when == when && (first || !check.of_all)) (this->*check.look)();
@@ -130,6 +131,36 @@ void MPMSetupChecks::locking()
                    "points lock, and bodies that bend or are indented are 7 to 20 % too stiff on "
                    "10 cells: use locking fbar or pressure",
                    field.id(), locks->id, MPMRestModuli(*locks->material).poisson_ratio());
+}
+
+/** Nodes that a body moves do not let liquid next to it be compressed, so that the rows of points
+ *  there share the pressure in a wrong way, which the nodes do not see. */
+void MPMSetupChecks::liquid_on_bodies()
+{
+  if (warned_of_liquid || field.options.smooths_volumes()) return;
+  const auto actions = find_fixes<MPMNodeAction>(lmp);
+  const FixMPMMaterial *liquid = nullptr, *solid = nullptr;
+  for (auto *other : MPMField::all(lmp)) {
+    const bool near = other == &field ||
+        std::any_of(actions.begin(), actions.end(), [&](const auto *action) {
+                        return action->touches(field.id()) && action->touches(other->id());
+                      });
+    if (!near) continue;
+    const auto here = other->present_materials();
+    for (std::size_t k = 0; k < here.size(); k++) {
+      const auto *const material = other->materials[k];
+      if (here[k] && material->material->is_solid()) solid = material;
+      if (here[k] && other == &field && material->material->is_barotropic()) liquid = material;
+    }
+  }
+  warned_of_liquid = liquid && solid;
+  if (warned_of_liquid && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm {}: pressures of the liquid (fix mpm/material {}) are wrong by 10 to 25 "
+        "% in the rows of points next to bodies that deform (fix mpm/material {}), while "
+        "forces on these are right: use smooth 0.4",
+        field.id(), liquid->id, solid->id);
 }
 
 /** In the total frame points stay at their positions in their cells, even where round-off decides

@@ -60,7 +60,7 @@ class MPMSetupChecks : protected Pointers {
  private:
   MPMField &field;
   MPMDoubts doubts;
-  bool warned_of_locking = false, told_of_columns = false;
+  bool warned_of_locking = false, warned_of_liquid = false, told_of_columns = false;
   std::set<std::string> told_of;    // IDs of computes
 
   /** Is another fix an integrator of points of the field, too? */
@@ -89,6 +89,8 @@ class MPMSetupChecks : protected Pointers {
   void places();
   /** Are there nearly incompressible solids without a cure for locking? */
   void locking();
+  /** Is there liquid next to bodies that deform, without smooth volumes? */
+  void liquid_on_bodies();
   /** Do neighbor lists consist mostly of skin? */
   void lists_of_pairs();
 };
