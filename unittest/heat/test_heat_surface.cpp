@@ -687,7 +687,7 @@ TEST(SurfaceInNodes, RespondsByNodesWithHeat)
     serial.commands("run 1\n");
     power[k] = run.fix_vector("heat", 10)[9];
     alone = serial.fix_vector("heat", 10)[9];
-    EXPECT_NEAR(power[k] / alone, 1.0, 1e-6) << k;
+    EXPECT_NEAR(power[k] / alone, 1.0, 1e-8) << k;
   }
   EXPECT_NEAR(measured("step 2", 2.0 * power[2] / (power[1] + power[3])), 1.0, 0.01);
 }

@@ -351,8 +351,9 @@ void MPMHeatBody::note_face(int64_t node, int axis, double weight)
   noted[NOTED * node + PARTS] += std::fabs(weight);
 }
 
-bool MPMHeatBody::is_edge(int64_t node) const
+bool MPMHeatBody::is_edge(int64_t node, double weight) const
 {
+  if (!(weight > ROUND_OFF)) return false;
   const double *const at = &noted[NOTED * node];
   return at[OF_SURFACES] > 0.0 && MathExtra::len3(at + NORMAL) < STRAIGHT * at[PARTS];
 }
@@ -360,7 +361,7 @@ bool MPMHeatBody::is_edge(int64_t node) const
 bool MPMHeatBody::is_edge(const Line &line) const
 {
   for (int k = 0; k < line.n; k++)
-    if (line.weight[k] > 0.0 && is_edge(line.node[k])) return true;
+    if (is_edge(line.node[k], line.weight[k])) return true;
   return false;
 }
 

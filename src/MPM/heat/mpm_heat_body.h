@@ -95,8 +95,11 @@ class MPMHeatBody : protected Pointers {
   void note(const Line &, const double *into, double part);
   void note_face(int64_t node, int axis, double sign);
   void end_edges() { field.nodes.sum(noted.data(), NOTED, 0, NOTED); }
-  /** Does the node belong to lines of surfaces, and is it at an edge? */
-  bool is_edge(int64_t node) const;
+  /** Weights, and shares of a volume, that a node may have or not where a surface is in a plane of
+   *  nodes, as round-off decides. */
+  static constexpr double ROUND_OFF = 1.0e-9;
+  /** Does a node with this weight in a line belong to lines of surfaces, and is it at an edge? */
+  bool is_edge(int64_t node, double weight) const;
   bool is_edge(const Line &) const;
 
   /** One stage: give() collects heat at lines, and end_stage() adds it to the rates of nodes. */

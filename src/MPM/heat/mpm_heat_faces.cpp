@@ -266,7 +266,7 @@ void MPMHeatFaces::slow_down_at_edges(const MPMHeatBody &body, double conduction
       if (!(line.response > 0.0) || !(line.rate > conduction)) continue;
       bool at_edge = false;
       for (int k = 0; k < face.n; k++)
-        at_edge = at_edge || (line.weight[k] > 0.0 && body.is_edge(line.node[k]));
+        at_edge = at_edge || body.is_edge(line.node[k], line.weight[k]);
       if (!at_edge) continue;
       line.area *= conduction / line.rate;
       line.rate = conduction;

@@ -252,7 +252,7 @@ void MPMHeatSurfaces::find_covered()
   body.field.nodes.sum(covered.data(), 1, 0, 1);
   for (int64_t node = 0; node < grid.nnodes(); node++) {
     if (covered[node] == 0.0) continue;
-    const double all = body.share[node] > 0.0 ? volume_fraction(node) : 0.0;
+    const double all = body.share[node] > MPMHeatBody::ROUND_OFF ? volume_fraction(node) : 0.0;
     covered[node] = all > 0.0 ? covered[node] / all : 0.0;
   }
   body.field.nodes.complete(covered.data(), 1, 1);
