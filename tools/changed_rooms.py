@@ -44,4 +44,5 @@ def main(commit):
     return 0
 
 
-sys.exit(main(sys.argv[1]))
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

@@ -42,7 +42,7 @@ class Composition:
     def __init__(self, seed, names=None, units=None, dimension=None):
         pick = self.pick = random_numbers.Random("composition %d" % seed)
         other = random_numbers.Random("other %d" % seed)    # so that all else is the same in other units
-        self.seed, self.files = seed, {}
+        self.seed, self.asked, self.files = seed, names, {}
         self.units = units or other.choice(sorted(UNITS))
         self.h, self.density, self.speed, self.mvv2e, nktv2p = UNITS[self.units]
         self.modulus = self.density * self.speed ** 2 * self.mvv2e * nktv2p

@@ -36,7 +36,7 @@ def table(path):
 
 def scaled(scene, rows):
     """Rows without units."""
-    mass = scene.density * scene.h ** scene.dimension
+    mass = scene.density * scene.h ** (3 if scene.axisymmetric else scene.dimension)    # of rings
     scales = [1, 1, mass] + [scene.h] * 3 + [0.01 * scene.speed] * 3 + [
         0.01 * scene.modulus] * 6 + [0.01] * 9 + [scale for _, scale in scene.columns]
     found = [[value / scale for value, scale in zip(row, scales)] for row in rows]
@@ -109,7 +109,7 @@ def judge(machine, scene, oracle, skip=()):
             return "ran", "", text, done
         else:
             names = sorted(UNITS)
-            other = Composition(scene.seed, scene.names, names[(names.index(scene.units) + 1) % len(names)])
+            other = Composition(scene.seed, scene.asked, names[(names.index(scene.units) + 1) % len(names)])
             second = without(other.first(), skip)
         files = other.files
         again = machine.run(folder, second, files, ranks=ranks)

@@ -11,9 +11,12 @@ is compiled; the build tree itself (MPM_BUILD_DIR, default ./build) is only brou
 tools/build.sh.  Kernels and laws are compiled and run for the baseline instruction set alone.
 
   --list FILE    mutants (default: tools/mutants.txt, which tells its format)
+  --random N     instead of those of the list: N mistakes anywhere in src/MPM (mutants_random.py), each tried with
+                 the tests of its room, of rooms that include its header, and the scenes, the short ones first, in
+                 the build tree of tools/test.sh, ./build/quick
   --jobs N       mutants at a time (default: MPM_JOBS, or all cores)
   --sample N     only so many of them, drawn at random
-  --seed N       for another draw (default: 0)
+  --seed N       for another draw, of --sample and --random (default: 0)
   --check        only look whether the list fits the source and the tests, without a build tree
   --no-build     the test programs are up to date
   --keep         leave what was compiled in BUILD/mutants
@@ -24,6 +27,7 @@ Ends with a table and the share of mutants that were killed; the exit status is 
 import argparse
 import concurrent.futures
 import fnmatch
+import glob
 import json
 import math
 import os
@@ -37,9 +41,13 @@ import sys
 import tempfile
 import time
 
+import mutants_random
+from changed_rooms import rooms_of
+
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SOURCES = os.path.join(ROOT, "src", "MPM")
-BUILD = os.path.abspath(os.environ.get("MPM_BUILD_DIR") or os.path.join(ROOT, "build"))
+BUILD = os.path.abspath(os.environ.get("MPM_BUILD_DIR") or
+                        os.path.join(ROOT, "build", "quick" if "--random" in sys.argv else ""))
 LIBRARY = os.path.join(BUILD, "python", "lammps", "liblammps.so")    # target mpm_python
 KILLED, SURVIVED, BROKEN, STALE = "killed", "survived", "does not compile", "stale"
 
@@ -49,9 +57,12 @@ class Mutant:
 
     def __init__(self, name):
         self.name, self.file, self.old, self.new, self.tests = name, "", [], [], []
+        self.whole = self.told = None    # of a random one: the mutated file, and what the mistake is
 
     def source(self):
         """the mutated file, or None when the old text is not there exactly once"""
+        if self.whole:
+            return self.whole
         with open(os.path.join(SOURCES, self.file)) as file:
             text = file.read()
         words = r"\s+".join(re.escape(word) for word in " ".join(self.old).split())
@@ -84,6 +95,29 @@ def read_list(path):
         if not (mutant.file and mutant.old and mutant.tests) or names.count(mutant.name) > 1:
             sys.exit("%s: mutant %s is incomplete, or there twice" % (path, mutant.name))
     return mutants
+
+
+def draw(count, seed):
+    found = []
+    for name, file, text, told in mutants_random.draw(SOURCES, count, seed):
+        found.append(Mutant(name))
+        found[-1].file, found[-1].whole, found[-1].told = file, text, told
+    return found
+
+
+def tests_of_rooms(tree, file):
+    """(test, all of its cases): of the room of a source, of those that include its header, and the scenes; in each the
+    ones first that took the least time in their last run"""
+    header = "src/MPM/" + os.path.splitext(file)[0] + ".h"
+    own = file.partition("/")[0]
+    rooms = [own] + sorted(rooms_of([header]) - {own, "scenes"}) + ["scenes"]
+    found = []
+    for name, test in tree.tests.items():
+        labels = next((entry["value"] for entry in test["properties"] if entry["name"] == "LABELS"), [])
+        room = next((k for k, room in enumerate(rooms) if room in labels), None)
+        if room is not None and "long" not in labels and tree.program_of(name):
+            found.append((room, tree.cost(name), name))
+    return [(name, "*") for _, _, name in sorted(found)]
 
 
 def program(test):
@@ -130,6 +164,21 @@ class BuildTree:
         self.library = self.read_link("", "mpm_python") if os.path.exists(library) else []
         shown = quiet(["ctest", "--show-only=json-v1"], cwd=BUILD)
         self.tests = {test["name"]: test for test in json.loads(shown)["tests"]}
+
+        path = os.path.join(BUILD, "Testing", "Temporary", "CTestCostData.txt")
+        with open(path if os.path.exists(path) else os.devnull) as file:
+            self.costs = {words[0]: float(words[2]) for words in map(str.split, file) if len(words) == 3}
+
+    def cost(self, test):
+        """seconds that it took in its last run by ctest; a minute if there was none"""
+        return self.costs.get(test) or 60.0
+
+    def program_of(self, test):
+        """the program that a test runs: one of its own, or that of its room; None: it is a script"""
+        for word in self.tests[test]["command"]:
+            if os.path.dirname(word) == os.path.join(BUILD, "unittest"):
+                return os.path.basename(word)
+        return None
 
     @staticmethod
     def read_link(folder, name):
@@ -210,7 +259,7 @@ def run_test(tree, test, names, executable, folder, limit):
     """exit status, None when it took too long, and output; the limit is one of processor time for each
     process, so that a busy machine changes nothing, and thirty times as long for what sleeps"""
     known = tree.tests[test]
-    command = [executable if os.path.basename(word) == program(test) else word
+    command = [executable if os.path.basename(word) == tree.program_of(test) else word
                for word in known["command"]]
     command.append("--gtest_filter=" + names)
     if ".np" not in test or test.endswith(".np1"):    # or else other ranks would wait
@@ -294,7 +343,7 @@ def try_mutant(tree, mutant, times, keep):
 
     objects, built = {}, set()
     for test, names in mutant.tests:
-        name = program(test)
+        name = tree.program_of(test)
         if name not in built:
             for path in tree.parts(name):
                 if path in objects or not tree.depends(path, mutant.file):
@@ -326,6 +375,7 @@ def main():
     parser.add_argument("--list", default=os.path.join(ROOT, "tools", "mutants.txt"))
     parser.add_argument("--jobs", type=int,
                         default=int(os.environ.get("MPM_JOBS") or os.cpu_count()))
+    parser.add_argument("--random", type=int)
     parser.add_argument("--sample", type=int)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--check", action="store_true")
@@ -333,6 +383,8 @@ def main():
     parser.add_argument("--keep", action="store_true")
     options = parser.parse_args()
 
+    if options.random:
+        return run(draw(options.random, options.seed), options, None)
     mutants = chosen(read_list(options.list), options.patterns)
     if options.sample is not None and options.sample < len(mutants):
         mutants = random.Random(options.seed).sample(mutants, options.sample)
@@ -346,14 +398,27 @@ def main():
         print("%d mutants, %d stale, %d tests that are not there" % (len(mutants), len(stale), len(lost)))
         return 1 if stale or lost or not mutants else 0
 
+    return run(mutants, options, sorted({program(test) for mutant in mutants for test, _ in mutant.tests}))
+
+
+def run(mutants, options, programs):
+    """tries all of them, with these programs; None: those of all rooms, which the suite has run"""
+    if not programs:
+        programs = [os.path.basename(path) for path in glob.glob(os.path.join(BUILD, "unittest", "test_*"))]
+        os.environ["MPM_QUICK"] = "1"    # as in tools/test.sh
+    tree = BuildTree(programs, not options.no_build)
+    for mutant in mutants:
+        if mutant.whole:
+            mutant.tests = tests_of_rooms(tree, mutant.file)
     wanted = sorted({test for mutant in mutants for test in mutant.tests})
-    tree = BuildTree(sorted({program(test) for test, _ in wanted}), not options.no_build)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         folder = os.path.join(BUILD, "mutants")
         os.makedirs(folder, exist_ok=True)
-        times = check_tests(tree, wanted, folder, pool)
-        print("%d tests pass without mutants, in %.0f s" % (len(times), sum(times.values())),
-              flush=True)
+        if mutants[0].whole:
+            times = {key: tree.cost(key[0]) for key in wanted}
+        else:
+            times = check_tests(tree, wanted, folder, pool)
+            print("%d tests pass without mutants, in %.0f s" % (len(times), sum(times.values())), flush=True)
         futures = [pool.submit(try_mutant, tree, mutant, times, options.keep) for mutant in mutants]
         wide = max(len(mutant.name) for mutant in mutants)
         results = []
@@ -361,6 +426,8 @@ def main():
             what, by, seconds = future.result()
             results.append(what)
             print("%-*s  %-16s %5.0f s  %s" % (wide, mutant.name, what, seconds, by), flush=True)
+            if mutant.told:
+                print("    " + mutant.told, flush=True)
 
     tried = results.count(KILLED) + results.count(SURVIVED)
     print("%d of %d mutants killed (%.0f %%), %d survived, %d do not compile, %d stale" % (

@@ -215,6 +215,29 @@ SERIAL_TEST(MeshGrid, EnergyAndMomentum)
     }
 }
 
+// Points that have failed keep no stress in the next run: a broken piece flies on
+
+SERIAL_TEST(MeshGrid, BrokenPiecesFlyOn)
+{
+  const ScratchFile file("bar.msh", bar(TRIANGLES, 3));
+  Scene run(scene(2, file.name,
+                  "eos linear 1 strength elastic 0.5 damage rankine 0.01 thermal adiabatic 1 0",
+                  "frame total transfer flip 1") +
+            "velocity all set 0.1 0.2 0\nvelocity all ramp vx -0.1 0.1 x 0 4 sum yes\n"
+            "timestep 0.05\nrun 100\n");
+  const auto before = run.gather();
+  run.commands("run 20\n");
+  const auto after = run.gather();
+  double stress = 0.0, change = 0.0;
+  for (std::size_t p = 0; p < before.size(); p++)
+    for (int d = 0; d < 2; d++) {
+      stress = std::max(stress, std::fabs(before[p].stress[d]));
+      change = std::max(change, std::fabs(after[p].v[d] - before[p].v[d]));
+    }
+  EXPECT_LT(stress, 1e-12);    // all of them have failed
+  EXPECT_LT(measured("change of velocity", change), 1e-13);
+}
+
 // A fluid that spins between curved walls keeps to its circles: the only force is m v^2/r
 SERIAL_TEST(MeshGrid, SlipAlongACurve)
 {

@@ -43,6 +43,8 @@ struct MPMKineticDamping {
 
   static constexpr double SOON = 3.0;       ///< steps between two rests
   static constexpr double GROWN = 100.0;    ///< ratio of peaks that counts as growth
+  /** Least fall of the energy, relative to it: that of a body in free flight differs by round-off. */
+  static constexpr double FALL = 1.0e-10;
 
   /** Is half of the change of velocities to be left out in the step that comes next, the first
    *  after a rest? */
@@ -51,7 +53,7 @@ struct MPMKineticDamping {
    *  set to zero. */
   bool advance(double energy)
   {
-    const bool falls = energy < kinetic;
+    const bool falls = energy < (1.0 - FALL) * kinetic;
     peak = falls ? kinetic : 0.0;
     kinetic = energy;
     nsteps++;

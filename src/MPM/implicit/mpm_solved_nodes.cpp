@@ -37,9 +37,14 @@ void MPMSolvedNodes::begin_step()
   mass.resize(nnodes);
   start_velocity.assign(nreals(), 0.0);
   explicit_velocity.assign(nreals(), 0.0);
+  double heaviest = 0.0;
+  each_record([&](const Body &, int64_t, double *record) {
+    heaviest = std::max(heaviest, record[3]);
+  });
+  const double least = MPMStencil::ROUND_OFF * largest(heaviest);
   each_record([&](const Body &, int64_t n, double *record) {
     mass[n] = record[3] > 0.0 ? record[3] : 0.0;
-    if (field.domains && reach[n] < REACHED) {    // as if no point reached it
+    if (mass[n] <= least || (field.domains && reach[n] < REACHED)) {    // as if no point reached it
       std::fill_n(record, 8, 0.0);
       mass[n] = 0.0;
     }

@@ -240,7 +240,8 @@ void FixMPMMesh::check_points()
                id);
 }
 
-/** Points without any stress get the pressure of their equation of state, as those of fix mpm. */
+/** Points without any stress get the pressure of their equation of state, as those of fix mpm; those
+ *  that have failed keep none. */
 void FixMPMMesh::give_initial_stress()
 {
   body->for_batches(body->order, [&](const int *list, int n, const FixMPMMaterial *material) {
@@ -252,6 +253,7 @@ void FixMPMMesh::give_initial_stress()
       const bool none = std::all_of(tau, tau + 6, [](double s) {
         return s == 0.0;
       });
+      if (material->damage >= 0 && material->history[list[p]][material->damage] >= 1.0) continue;
       for (int c = 0; c < 6 && none; c++) tau[c] = body->batch->J[p] * body->batch->stress[c][p];
     }
   });
