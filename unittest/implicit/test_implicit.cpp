@@ -511,6 +511,29 @@ SERIAL_TEST(Multigrid, ComesToTheSame)
       expect_same_with_levels(c.name, c.scene, method, method == "static" ? c.fewer : 0.0);
 }
 
+// Points that reach new nodes while levels are used again: these must be made for all nodes
+
+SERIAL_TEST(Multigrid, SeesNewNodes)
+{
+  std::vector<Scene::State> states[2];
+  for (const bool multigrid : {false, true}) {
+    Scene run(
+        plane("lj", "f f", "0 14 0 12", 2, 0.5) + "fix g all mpm 1 shape gimp transfer apic\n" +
+        bodies({{"left", "block 2 6 2 6 INF INF"}, {"right", "block 8 11 3 6 INF INF"}}, "ppc 2") +
+        "velocity left set 0.03 0.02 0\nvelocity right set -0.03 0.01 0\n"
+        "fix m1 left mpm/material density 2 corotated 0.5 0.3\n"
+        "fix m2 right mpm/material density 1 neohookean 0.5 0.3\n"
+        "fix solve all mpm/implicit euler tolerance 1e-11 solver " +
+        (multigrid ? "multigrid" : "blocks") + "\ntimestep 10\nrun 12\n");
+    states[multigrid] = run.gather();
+  }
+  double difference = 0.0;
+  for (std::size_t p = 0; p < states[0].size(); p++)
+    for (int d = 0; d < 2; d++)
+      difference = std::max(difference, std::fabs(states[0][p].v[d] - states[1][p].v[d]));
+  EXPECT_LT(measured("difference of velocities", difference), 1e-9);
+}
+
 // a block at angles to the lattice in a corner of two slopes, which hold lines of nodes together:
 // levels take some of what is free in these for held, and linear systems went on to the largest
 // number of iterations, in which nothing was gained

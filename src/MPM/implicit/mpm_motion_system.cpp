@@ -147,7 +147,8 @@ static void round_projection(int n, double *S)
 
 void MPMMotionSystem::make_levels(bool same_structure)
 {
-  if (!same_structure || !multigrid->begin_again()) begin_levels();
+  if (same_structure && multigrid->begin_again() && fill_levels()) return;
+  begin_levels();
   fill_levels();
 }
 
@@ -178,8 +179,9 @@ void MPMMotionSystem::begin_levels()
   multigrid->begin(projection.data(), blocks.data(), ties);
 }
 
-/** Gives the levels that have begun the values of points and masses. */
-void MPMMotionSystem::fill_levels()
+/** Gives the levels that have begun the values of points and masses. Returns false if these reach
+ *  nodes that the levels do not know. */
+bool MPMMotionSystem::fill_levels()
 {
   const Clock timed(times, MPMImplicitTimes::PRECONDITIONERS);
   by_levels = true;
@@ -187,7 +189,7 @@ void MPMMotionSystem::fill_levels()
   std::vector<double> stiff = nodes.mass;
   for (double &m : stiff) m *= balance.inertia_per_mass();
   constraints.add_friction_stiffness(stiff.data());
-  multigrid->finish(
+  return multigrid->finish(
       *this, balance.inertia_per_mass() > 0.0 || constraints.rubs() ? stiff.data() : nullptr);
 }
 

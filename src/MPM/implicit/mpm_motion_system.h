@@ -66,7 +66,7 @@ class MPMMotionSystem : public MPM_NS::LinearSystem, private MPMImplicitParts {
   void find_blocks();
   void prepare_blocks();
   void begin_levels();
-  void fill_levels();
+  bool fill_levels();
   MPM_NS::SolveReport solve_general(const double *b, double *x, const MPM_NS::SolveGoal &);
 };
 

@@ -216,7 +216,7 @@ void SplineMultigrid::Levels::build()
   coarse.build(std::move(level), std::move(rows), transfer.period, std::move(blocks));
 }
 
-void SplineMultigrid::finish(LinearSystem &system, const double *mass)
+bool SplineMultigrid::finish(LinearSystem &system, const double *mass)
 {
   auto &o = *on;
   o.system = &system;
@@ -227,16 +227,18 @@ void SplineMultigrid::finish(LinearSystem &system, const double *mass)
     o.build();
     o.usable = o.usable && o.coarse.factorize();
     if (o.usable) o.smoother.estimate_largest(system);
-    return;
+    return true;
   }
   bool same_places = o.again;
   if (!o.again) {
     o.build();
   } else if (!o.whole.refill(o.numbered_blocks())) {
+    if (!o.whole.knows_nodes()) return o.again = false;
     o.whole.assemble();
     same_places = false;
   }
   o.usable = o.again = o.whole.factorize(same_places);
+  return true;
 }
 
 void SplineMultigrid::precondition(const double *r, double *z)

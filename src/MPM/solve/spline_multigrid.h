@@ -70,8 +70,10 @@ class SplineMultigrid {
                 const double *changes);
   /** Finishes the operator. mass: [node], summed over ranks, times the factor that makes it a
    *  stiffness; null: no masses. system: applies A; its product is used here (some ten times) and
-   *  in each precondition() (four times). Collective. */
-  void finish(LinearSystem &system, const double *mass);
+   *  in each precondition() (four times). Returns false, on all ranks, if points reach nodes after
+   *  begin_again() that they did not reach before: call begin(), and give all of them again.
+   *  Collective. */
+  bool finish(LinearSystem &system, const double *mass);
   /** One cycle for A z = r; z = r if the levels are not usable. Collective. */
   void precondition(const double *r, double *z);
 

@@ -14,6 +14,7 @@
 #include "solve/lattice_nodes.h"
 #include "solve/lattice_ranks.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace MPM_NS {
@@ -36,6 +37,13 @@ class WholeSystem {
    *  and assemble() is needed. Collective. */
   bool refill(const std::vector<MatrixBlock> &mine);
   void assemble();
+  /** Were all nodes of the last blocks there in build()? The same on all ranks. */
+  bool knows_nodes() const
+  {
+    return std::all_of(blocks.begin(), blocks.end(), [](const MatrixBlock &b) {
+      return b.row >= 0 && b.column >= 0;
+    });
+  }
   /** same_places: entries are where those of the last matrix were. Returns false if it is not
    *  possible. Collective. */
   bool factorize(bool same_places);
