@@ -185,3 +185,64 @@ SERIAL_TEST(Rates, EndWithTheCorrections)
   for (std::size_t i = 0; i < a.size(); i++)
     for (int d = 0; d < 2; d++) EXPECT_EQ(a[i].v[d], b[i].v[d]);
 }
+
+/** Gas of length 1 behind a piston that goes slowly (at most 0.09 of sound) to the volume 2. */
+static std::string piston(const std::string &options, int ppc)
+{
+  return plane("si", "f f", "0 2.3 0 0.5", 1, 0.02) + "fix grid all mpm 0.05 " + options +
+      "\nregion gas block 0 1 INF INF INF INF\n" +
+      strprintf("create_points 1 region gas ppc %d\n", ppc) +
+      "fix m all mpm/material density 1.2 eos ideal/gas 1.4 pressure 1.2 viscosity artificial 1.5 "
+      "0.06\nfix faces all mpm/boundary xlo ylo yhi slip\n"
+      "variable s equal time/20\nvariable d equal v_s-sin(2*PI*v_s)/(2*PI)\n"
+      "region piston block 1 INF INF INF INF INF move v_d NULL NULL\n"
+      "fix piston all mpm/boundary region piston slip\nvariable force equal f_faces[1]\n"
+      "fix step all mpm/dt 0.4 until 20\n";
+}
+
+/** Of a gas of points: pressure on the wall at the end, and volumes, over the exact ones. */
+static std::pair<double, double> expansion(Scene &run, std::string *log = nullptr)
+{
+  double sum = 0.0;
+  int n = 0;
+  run.each_step(
+      [&](double **) {
+        if (run.time() < 18.0) return;
+        const double volume = 1.0 + run.variable("d");
+        sum -= run.variable("force") / 0.5 / (1.2 * std::pow(volume, -1.4));
+        n++;
+      },
+      1);
+  const std::string text = log_of(run, "run 100000\n");
+  if (log) *log = text;
+  double volume = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    volume += run.lmp->atom->vfrac[i] * run.points().jacobian(i) / 0.5;
+  return {sum / n, sum_over_ranks(volume) / (1.0 + run.variable("d"))};
+}
+
+static const char TOO_FEW[] = "pressures of points of gas differ by";
+
+// p V^1.4 is constant where points are close enough together, and nothing is told
+SERIAL_PARAMETER_TEST(Gas, ExpandsAsAnIsentrope, const char *,
+                      Values("transfer apic", "transfer aflip 1.0", "transfer apic shape cubic"))
+{
+  const std::string options = GetParam();
+  Scene run(piston(options, options.find("cubic") == std::string::npos ? 4 : 2));
+  std::string log;
+  const auto found = expansion(run, &log);
+  EXPECT_NEAR(measured("pressure", found.first), 1.0, 0.01);
+  EXPECT_NEAR(measured("volume", found.second), 1.0, 0.01);
+  EXPECT_THAT(log, Not(HasSubstr(std::string("WARNING: Fix mpm grid: the ") + TOO_FEW)));
+  EXPECT_THAT(log, HasSubstr(TOO_FEW));    // a line of the summary
+}
+
+// With two points per cell and axis, they run away from each other
+SERIAL_PARAMETER_TEST(ThinGas, OfTooFewPointsIsTold, const char *,
+                      Values("transfer apic", "transfer aflip 1.0", "transfer flip 1.0"))
+{
+  Scene run(piston(GetParam(), 2));
+  std::string log;
+  EXPECT_GT(measured("volume", expansion(run, &log).second), 1.05);
+  EXPECT_THAT(log, HasSubstr("Use four points per cell and axis"));
+}

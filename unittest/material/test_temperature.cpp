@@ -312,6 +312,8 @@ TEST(Expansion, BadInputIsRefused)
        {"eos ideal/gas 1.4 pressure 1 thermal conducting 1 1 1 expansion 1", "leave it out"},
        {"linear 1 0 thermal adiabatic 1 1 gruneisen consistent", "add 'expansion ALPHA'"},
        {"linear 1 0 thermal adiabatic 1 1 gruneisen 1 gruneisen consistent", "given twice"},
+       {"eos ideal/gas 1.4 pressure 1 thermal constant 300", "with fix mpm/heat", 8},
+       {"eos jwl 1 1 1 1 1 1 1 thermal constant 300", "with fix mpm/heat"},
        {"linear 1 0 thermal constant 1 expansion 1", "unknown keyword 'expansion'"},
        {"linear 1 0 thermal adiabatic 1 1 expansion", "ALPHA is missing"},
        {"orthotropic 11 0.9 0.5 0.4 0.45 0.5 0.7 0.65 0.05 thermal adiabatic 1 1 expansion 1 "

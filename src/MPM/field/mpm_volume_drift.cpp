@@ -41,9 +41,16 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// difference of the pressures of points of a gas from the means around them, relative to these, that
+// is told: below, the mean pressure is right within 2 %
+static constexpr double MOST_SPREAD = 0.05;
+static const char GAS_NEEDS[] =
+    "Use four points per cell and axis, shape cubic, or cpdi, and transfer apic; a smaller spacing "
+    "does not help";
+
 // steps of the cycle from one look to the next, with and without a correction, and those of the
 // mean that a warning is about: waves and splashes pass in less
-static constexpr int CORRECT_EVERY = 30, LOOK_EVERY = 400, LASTING = 1000;
+static constexpr int CORRECT_EVERY = 30, LOOK_EVERY = 400, LOOK_AT_GAS = 200, LASTING = 1000;
 // filling of the nodes around a point inside. Linear functions: of the nodes that a flat surface
 // reaches, the last one may be half full, and round-off must not decide; wider ones: at most .17
 static constexpr double FULL = 0.4, FULL_LINEAR = 0.53;
@@ -77,6 +84,12 @@ static double integral(Shape shape, double t)
   return t < 0.0 ? 0.5 - half : 0.5 + half;
 }
 
+/** Is its pressure absolute, so that sums over points that are not integrals push nodes? */
+static bool is_gas(const Material &material)
+{
+  return material.describe().find("eos ideal/gas") != std::string::npos;
+}
+
 void MPMVolumeDrift::init()
 {
   corrects = field.options.drift > 0.0 && !field.options.averages_strain() &&
@@ -85,6 +98,10 @@ void MPMVolumeDrift::init()
              });
   warned = cleared = false;
   inside = {};
+  gas = {};
+  gases.clear();
+  for (const auto *material : field.materials)
+    if (is_gas(*material->material)) gases.insert(material);
   stiffness.clear();
   if (!corrects) return;
   const double scale = force->mvv2e * force->nktv2p;    // of density velocity^2, in pressure units
@@ -100,7 +117,8 @@ int MPMVolumeDrift::looks_every() const
   // where the lattice is not in space, or points share the room with others, there is nothing to
   // compare
   if (field.options.total || field.frame->mean_rate || field.shares_room) return 0;
-  return corrects ? CORRECT_EVERY : LOOK_EVERY;
+  if (corrects) return CORRECT_EVERY;
+  return gases.empty() ? LOOK_EVERY : LOOK_AT_GAS;
 }
 
 /** Share of the integral of the function of a node along an axis that is in the box. */
@@ -267,6 +285,7 @@ void MPMVolumeDrift::find_inside()
       mine[3] += part[n] * excess * excess;
     }
     record[0] = is_inside ? part[n] * excess : 0.0;
+    record[2] = is_inside ? 0.0 : 1.0;
     if (record[3] > 0.0) record[1] /= record[3];
   }
   MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
@@ -276,10 +295,44 @@ void MPMVolumeDrift::find_inside()
   inside.rms = std::sqrt(all[3] / all[1]);
 }
 
+/** Mean difference of the pressures of points of gases from the means around them, relative to
+ *  these. Of points all of whose nodes are inside; each counts by its volume. */
+void MPMVolumeDrift::find_spread()
+{
+  double mine[2] = {0.0}, all[2];
+  for (const auto &run : field.map->runs) {
+    if (!gases.count(run.material)) continue;
+    for (int i = run.first; i < run.last; i++) {
+      const double *const q = &field.work.vectors[3 * (std::size_t) i];
+      if (q[2] > HARDLY) continue;
+      const double *const tau = field.points->tau[i];
+      const double J = field.points->jacobian(i), V = field.work.weights[i];
+      mine[0] += V * std::fabs((tau[0] + tau[1] + tau[2]) / (3.0 * J) + q[1]);
+      mine[1] += V * q[1];
+    }
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  gas.spread = all[1] > 0.0 ? all[0] / all[1] : 0.0;
+}
+
+/** Warns of points of a gas that run away from each other: some expand, and outweigh the others. */
+void MPMVolumeDrift::note_spread()
+{
+  if (gas.warned || gas.spread < MOST_SPREAD) return;
+  gas.warned = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm {}: the pressures of points of gas differ by {:.2g} of the mean "
+                   "pressures around them at step {}: the gas has expanded or has been stirred so "
+                   "far that too few points are in a cell, and pressures become too low. {}",
+                   field.id(), gas.spread, update->ntimestep, GAS_NEEDS);
+}
+
 /** Warns if fillings differ from one for long, and by more than chance. */
 void MPMVolumeDrift::note(int every)
 {
   if (inside.nodes == 0.0) return;
+  note_spread();
   if (inside.lasting == 0.0) inside.lasting = inside.mean;
   inside.lasting += std::min(1.0, (double) every / LASTING) * (inside.mean - inside.lasting);
   const double drift = inside.lasting - 1.0;
@@ -294,6 +347,7 @@ void MPMVolumeDrift::note(int every)
                    "apart, and so have pressures and densities. {}",
                    field.id(), 1.0 + drift, update->ntimestep,
                    corrects ? "Use more points per cell, or a larger drift"
+                       : gases.size() == field.materials.size() ? GAS_NEEDS
                        : field.options.drift > 0.0
                        ? "Check the volumes at the start; use a smaller time step or spacing, more "
                          "points per cell, transfer apic, or frame total"
@@ -314,6 +368,8 @@ void MPMVolumeDrift::step()
   if (now) find_strain();
   mark_points_at_surfaces();
   find_inside();
+  if (now || !gases.empty()) interpolate();
+  if (!gases.empty()) find_spread();
   note(every);
   if (now) find_rates();
 }
@@ -335,7 +391,6 @@ double *MPMVolumeDrift::rates(const FixMPMMaterial *material) const
 
 void MPMVolumeDrift::find_rates()
 {
-  interpolate();
   const double duration = CORRECT_EVERY * field.step_dt();
   for (const auto &run : field.map->runs) {
     double *const rate = rates(run.material);
@@ -368,6 +423,10 @@ std::string MPMVolumeDrift::report() const
 {
   if (inside.nodes == 0.0) return "";
   return fmt::format("  inside of bodies, volumes add up to {:.4f} of the room, {:.2g} rms at "
-                     "nodes\n",
-                     inside.mean, inside.rms);
+                     "nodes{}\n",
+                     inside.mean, inside.rms,
+                     gases.empty() ? ""
+                                   : fmt::format("; pressures of points of gas differ by {:.2g} "
+                                                 "from the means around them",
+                                                 gas.spread));
 }

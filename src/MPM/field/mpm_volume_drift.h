@@ -14,6 +14,7 @@
 #include "pointers.h"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,12 @@ class MPMVolumeDrift : protected Pointers {
     double nodes = 0.0, mean = 0.0, rms = 0.0;    // mean filling, and rms difference from one
     double lasting = 0.0;                         // mean over some time
   } inside;
+  /** Points of gases: difference of pressures from the means around them. */
+  struct {
+    double spread = 0.0;
+    bool warned = false;
+  } gas;
+  std::set<const FixMPMMaterial *> gases;
   std::vector<double> fill;      // [node] filling
   std::vector<double> part;      // [node] share of its function that is in the box
   std::vector<double> change;    // [n] strain since the last look
@@ -71,7 +78,9 @@ class MPMVolumeDrift : protected Pointers {
   void find_strain();
   void mark_points_at_surfaces();
   void find_inside();
+  void find_spread();
   void note(int every);
+  void note_spread();
   double *rates(const FixMPMMaterial *) const;
   void find_rates();
   void clear_rates();

@@ -440,6 +440,12 @@ class Parser {
         refuse(THERMAL,
                ": the temperature follows from the internal energy of '" + title(eos) +
                    "': use it without 'gruneisen' and 'melt'");
+      if (eos.info->finds_temperature && thermal.info->name == std::string("constant"))
+        refuse(THERMAL,
+               ": nothing brings or takes the heat that would keep the temperature of '" +
+                   title(eos) +
+                   "', whose pressure would be that without it: use 'thermal conducting' with "
+                   "fix mpm/heat, whose walls keep the gas at their temperature");
       if (expands && eos.info->expands)
         refuse(THERMAL,
                ": 'expansion' does not go with '" + title(eos) +

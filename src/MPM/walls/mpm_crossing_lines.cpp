@@ -327,6 +327,7 @@ void MPMCrossingLines::leave_alone()
 bool MPMCrossingLines::decide(const MPMWallContact &contact, MPMCrossing &c)
 {
   const bool to_surface = wall.holds_surface();
+  if (c.at_edge) return false;
   if (c.front == MPMCrossing::SOUND && !to_surface) return true;
   if (!contact.decided) c.acts = holds(c);
   if (!c.acts) return false;

@@ -44,6 +44,7 @@ struct MPMCrossing : NodeLine {
   bool in_plate = false;    ///< in a plate thinner than what nodes resolve
   bool alone = false;       ///< grips: shares no node with another line
   bool coupled = false;     ///< acts together with others, see MPMCoupledLines
+  bool at_edge = false;     ///< nodes act in its place, see MPMWallNodes::hold_at_edges()
 
   // where is the material, judged by the masses of nodes?
 

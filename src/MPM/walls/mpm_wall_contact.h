@@ -30,7 +30,8 @@ struct MPMWallNode {
   double distance = 0.0;    ///< from the surface at the start of the step; for growth and gaps
   double share = 1.0;       ///< share of the change to the velocity of the wall that the node takes
   MPMContactState state = MPMContactState::OPEN;
-  bool touched = true;    ///< separate: the surface of the material touches it in this step
+  bool touched = true;     ///< separate: the surface of the material touches it in this step
+  bool at_edge = false;    ///< acts whatever lines hold, see MPMWallNodes::hold_at_edges()
 };
 
 /** A contact that a solver decides, see field/mpm_trial_contact.h: the nodes with mass, and their

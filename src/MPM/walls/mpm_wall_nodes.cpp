@@ -24,7 +24,8 @@ using namespace MPM_NS;
 
 using MathSpecial::cube;
 
-static constexpr double HAND_OVER = 0.5;    // node spacings, see list_region()
+// node spacings, see list_region() and hold_at_edges()
+static constexpr double HAND_OVER = 0.5, LET_GO = 1.0;
 
 MPMWallNodes::MPMWallNodes(MPMWall &wall, MPMField &field, const Domain &box) :
     field(field), mirrors(wall, field, box), crossings(wall, field), wall(wall)
@@ -155,6 +156,83 @@ void MPMWallNodes::follow_region(double dt)
   const bool hands_over =
       wall.kind == MPMWall::SLIP && !wall.moves_and_holds && !wall.holds_surface();
   if (hands_over && wall.acts_across()) crossings.take_nodes(nodes);
+  if (wall.acts_across() && wall.holds_surface()) hold_at_edges();
+}
+
+/** Looks along u, the direction of the motion or the opposite one, for a face near a node that is
+ *  inside and nearest to another face. Its normal is that half a spacing from the edge between
+ *  them. */
+bool MPMWallNodes::find_face_ahead(const MPMWallNode &node, const double *u,
+                                   MPMWallNode &held) const
+{
+  constexpr double SAME = 0.9;    // cosine between normals
+  const double h = field.lattice.h, *const n = node.normal, far = (LET_GO + HAND_OVER) * h,
+               deep = 0.5 * h + std::max(0.0, node.distance);
+  double x[3], at[3];
+  field.grid.node_position(node.node, x);
+  const auto is_inside = [&](double way) {
+    for (int d = 0; d < 3; d++) at[d] = x[d] - deep * n[d] + way * u[d];
+    return wall.region->match(at[0], at[1], at[2]) != 0;
+  };
+  double inside = 0.0, outside = far;
+  if (is_inside(outside) || !is_inside(inside)) return false;
+  while (outside - inside > MPMWall::ON_SURFACE * h) {
+    const double middle = 0.5 * (inside + outside);
+    (is_inside(middle) ? inside : outside) = middle;
+  }
+  is_inside(inside);
+  held = node;
+  wall.normal(field, at, held.normal);
+  double depth = 0.0;
+  for (int d = 0; d < 3; d++) depth += (at[d] - x[d]) * held.normal[d];
+  if (depth < 0.0 || depth >= far || MathExtra::dot3(held.normal, n) > SAME) return false;
+  held.share = cube(1.0 - cube(std::max(0.0, depth / h - LET_GO) / HAND_OVER));
+  held.at_edge = true;
+  return true;
+}
+
+/** When an edge of a region has gone past a node, the node is nearest to a face along which the
+ *  region moves. The face that pushes the material would hold it no longer with slip: at once, and
+ *  long before the next plane of nodes is taken (DECISIONS.md). It holds the node to a depth of one
+ *  spacing, and lets it go over half a spacing. With stick, lines through both faces would share
+ *  nodes: those through the side leave them to the nodes inside. */
+void MPMWallNodes::hold_at_edges()
+{
+  constexpr double ALONG = 0.1;    // cosine between motion and normal
+  const double h = field.lattice.h;
+  const auto shift = MPMRegionMotion::of(wall.region);    // a tool that stops holds what it held
+  const auto at_edge = [&](const MPMWallNode &node, const auto &use) {
+    double u[3];
+    wall.motion.velocity(field.grid, node.node, u);
+    if (MathExtra::len3(u) == 0.0)
+      for (int d = 0; d < 3; d++) u[d] = *shift[d];
+    const double speed = MathExtra::len3(u);
+    if (speed == 0.0 || std::fabs(MathExtra::dot3(u, node.normal)) > ALONG * speed) return;
+    MPMWallNode held;
+    for (const double sign : {1.0, -1.0}) {
+      const double along[3] = {sign * u[0] / speed, sign * u[1] / speed, sign * u[2] / speed};
+      if (find_face_ahead(node, along, held)) use(held);
+    }
+  };
+  if (wall.kind == MPMWall::SLIP) {
+    const std::vector<MPMWallNode> inside = nodes;
+    for (const auto &node : inside)
+      if (node.share == 1.0 && node.distance >= -h)
+        at_edge(node, [&](const MPMWallNode &held) {
+          nodes.push_back(held);
+        });
+    return;
+  }
+  for (auto &line : crossings.lines) {
+    MPMWallNode base = {line.base};
+    double x[3];
+    field.grid.node_position(line.base, x);
+    std::copy_n(line.normal, 3, base.normal);
+    base.distance = wall.surface->distance(x, MPMWall::FAR * h);
+    at_edge(base, [&](const MPMWallNode &) {
+      line.at_edge = true;
+    });
+  }
 }
 
 void LAMMPS_NS::update_motion(MPMWall &wall, std::vector<MPMWallNodes> &fields, double dt)
@@ -188,7 +266,9 @@ void MPMWallNodes::act(MPMWallContact &contact)
     }
   std::sort(held.begin(), held.end());
   for (std::size_t k = 0; k < nodes.size(); k++) {
-    if (!held.empty() && std::binary_search(held.begin(), held.end(), nodes[k].node)) continue;
+    if (!nodes[k].at_edge && !held.empty() &&
+        std::binary_search(held.begin(), held.end(), nodes[k].node))
+      continue;
     contact.use_constraint(first_node() + k);
     contact.unit = field.grid.record(nodes[k].node)[3];
     act_on_node(contact, nodes[k]);

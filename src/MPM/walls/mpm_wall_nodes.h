@@ -74,6 +74,8 @@ class MPMWallNodes {
   MPMWall &wall;
 
   void extend_to_approaches();
+  void hold_at_edges();
+  bool find_face_ahead(const MPMWallNode &, const double *u, MPMWallNode &) const;
   std::vector<char> blocks_to_look_at() const;
   template <class Use> void visit_prescribed(const Use &) const;
   void act_on_node(MPMWallContact &, MPMWallNode &);
