@@ -150,7 +150,7 @@ SERIAL_TEST(RigidBody, SwingsOnAColumn)
   const double period = 2.0 * PI * length / (beta * c);
   double error[2];
   for (int k = 0; k < 2; k++) {
-    const double h = 0.5 / (1 << k), dt = 0.02 * h;
+    const double h = 0.5 / (1 << k), dt = 0.04 * h;
     Scene run(
         space("lj", "f f f", "0 1 0 1 0 14") +
         body("block 0 1 0 1 0 10.5", "density 1.0 linear 100.0 0.3",

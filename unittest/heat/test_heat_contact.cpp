@@ -295,7 +295,7 @@ SERIAL_TEST(Edge, BetweenTwoTemperatures)
         Scene run(
             two_squares(offset, "1 3 -1 0",
                         conductance + " region low temperature 0.0 region right temperature 2.0"));
-        run_to(run, 200.0, is_long ? 1.0 : 0.05);
+        run_to(run, 200.0, is_long ? 1.0 : 0.1);
         // behind the powers of both regions, whatever the order of the conditions
         power[is_long] = measured("power", run.fix_vector("heat", 12)[CONTACT + 2]);
       }

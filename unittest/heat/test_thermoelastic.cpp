@@ -87,7 +87,7 @@ SERIAL_PARAMETER_TEST(HeatedBar, IsQuasiStatic, bool, Values(true, false))
   for (int i = 0; i < run.n(); i++) X[run.lmp->atom->tag[i]] = run.x()[i][0];
   std::vector<double> all(X.size());
   MPI_Allreduce(X.data(), all.data(), (int) X.size(), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-  for (const double t : {0.05, 0.1, 0.3, 1.0}) {    // the last one is the end: 0.5
+  for (const double t : {0.05, 0.1, 0.3, 0.5}) {    // the mean of the last one is within 1 % of 0.5
     if (!clamped && t == 0.05) continue;            // it still swings
     run_until(run, t);
     const double now = run.time();

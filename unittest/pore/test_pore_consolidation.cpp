@@ -82,7 +82,7 @@ PARAMETER_TEST(
   LONG_AFTER(1);
   const Strip strip = GetParam();
   const Clay clay = {strip.nu, 50.0, 800.0};
-  const int n = 20;
+  const int n = 16;
   const double h = 1.0 / n, ramp = 0.01, F = 1e-3, c = clay.rate();
   Scene run(
       plane("lj", "f f", strprintf("0 1 0 %.17g", 3 * h), 1, 0.3 * h) +

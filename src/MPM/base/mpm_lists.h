@@ -9,6 +9,8 @@
 #ifndef LMP_MPM_LISTS_H
 #define LMP_MPM_LISTS_H
 
+#include "solve/bytes_of.h"
+
 #include <mpi.h>
 #include <numeric>
 #include <vector>
@@ -33,11 +35,7 @@ template <class T> std::vector<T> gather_on_all(const std::vector<T> &mine, MPI_
   return all;
 }
 
-/** Memory of lists, for memory_usage(). */
-template <class... List> double bytes_of(const List &...lists)
-{
-  return (0.0 + ... + (double) (lists.capacity() * sizeof(typename List::value_type)));
-}
+using MPM_NS::bytes_of;    // for memory_usage()
 
 }    // namespace LAMMPS_NS
 #endif

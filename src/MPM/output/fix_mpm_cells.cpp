@@ -28,7 +28,7 @@ using namespace LAMMPS_NS;
 // sums over the points of a cell, and the averages that are made of them
 
 enum { MASS, MOMENTUM, VOLUME = MOMENTUM + 3, STRESS, NSUM = STRESS + 6 };
-enum { DENSITY, VELOCITY, CAUCHY, PRESSURE, FRACTION, NAVERAGE };
+enum { DENSITY, VELOCITY, CAUCHY, PRESSURE, FILLED, NAVERAGE };
 
 static const struct {
   const char *name;
@@ -195,7 +195,7 @@ void FixMPMCells::average()
         const double per_mass = sum[MASS] > 0.0 ? 1.0 / sum[MASS] : 0.0;
         const double per_volume = sum[VOLUME] > 0.0 ? 1.0 / sum[VOLUME] : 0.0;
         *value(DENSITY, x, y, z) = sum[MASS] / cell_volume;
-        *value(FRACTION, x, y, z) = sum[VOLUME] / cell_volume;
+        *value(FILLED, x, y, z) = sum[VOLUME] / cell_volume;
         for (int d = 0; d < 3; d++) value(VELOCITY, x, y, z)[d] = per_mass * sum[MOMENTUM + d];
         for (int c = 0; c < 6; c++) value(CAUCHY, x, y, z)[c] = per_volume * sum[STRESS + c];
         *value(PRESSURE, x, y, z) =

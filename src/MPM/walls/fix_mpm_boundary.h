@@ -19,11 +19,11 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #include "field/mpm_node_action.h"
 #include "field/mpm_trial_contact.h"
 #include "fix.h"
-#include "walls/mpm_contact_search.h"
 #include "walls/mpm_obstacle.h"
 #include "walls/mpm_thin_regions.h"
 #include "walls/mpm_wall.h"
 #include "walls/mpm_wall_contact.h"
+#include "walls/mpm_wall_contact_search.h"
 #include "walls/mpm_wall_nodes.h"
 #include "walls/mpm_wall_reaction.h"
 #include "walls/mpm_wall_trial.h"
@@ -112,7 +112,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   std::vector<MPMWallNodes> nodes;    // one entry for each field to act on
   MPMWallReaction reaction;
   MPMWallContact contact;
-  MPMContactSearch search;
+  MPMWallContactSearch search;
   MPMThinRegions thin_regions;
   MPMWallTrial trial;
   std::vector<FixMPMBoundary *> rubbing;    // walls with friction

@@ -18,9 +18,9 @@
 #include "math_extra.h"
 #include "region.h"
 #include "update.h"
-#include "walls/mpm_contact_search.h"
 #include "walls/mpm_line_constraint.h"
 #include "walls/mpm_wall.h"
+#include "walls/mpm_wall_contact_search.h"
 #include "walls/mpm_wall_nodes.h"
 #include "walls/mpm_wall_reaction.h"
 

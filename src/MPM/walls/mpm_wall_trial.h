@@ -16,7 +16,7 @@
 #include <vector>
 
 namespace LAMMPS_NS {
-class MPMContactSearch;
+class MPMWallContactSearch;
 class MPMWall;
 class MPMWallNodes;
 class MPMWallReaction;
@@ -25,7 +25,7 @@ class MPMWallReaction;
 class MPMWallTrial : protected Pointers, public MPMTrialContact {
  public:
   MPMWallTrial(class LAMMPS *lmp, MPMWall &wall, std::vector<MPMWallNodes> &fields,
-               MPMContactSearch &search) :
+               MPMWallContactSearch &search) :
       Pointers(lmp),
       wall(wall), fields(fields), search(search)
   {
@@ -88,7 +88,7 @@ class MPMWallTrial : protected Pointers, public MPMTrialContact {
  private:
   MPMWall &wall;
   std::vector<MPMWallNodes> &fields;
-  MPMContactSearch &search;
+  MPMWallContactSearch &search;
 
   bool in_trials = false, is_due = false;
   MPMField *field = nullptr;                 // of the solver

@@ -6,8 +6,8 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_CONTACT_SEARCH_H
-#define LMP_MPM_CONTACT_SEARCH_H
+#ifndef LMP_MPM_WALL_CONTACT_SEARCH_H
+#define LMP_MPM_WALL_CONTACT_SEARCH_H
 
 #include "base/mpm_first_note.h"
 #include "pointers.h"
@@ -27,9 +27,9 @@ struct NodeLine;
 
 /** Finds the material that touches a wall, or approaches it, by mean distances of points
  *  (MPMWallGap). */
-class MPMContactSearch : protected Pointers {
+class MPMWallContactSearch : protected Pointers {
  public:
-  MPMContactSearch(class LAMMPS *lmp, MPMWall &wall) : Pointers(lmp), wall(wall) {}
+  MPMWallContactSearch(class LAMMPS *lmp, MPMWall &wall) : Pointers(lmp), wall(wall) {}
 
   /** Start of a run. */
   void begin_run() { first_gap.begin(); }

@@ -6,7 +6,7 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#include "walls/mpm_contact_search.h"
+#include "walls/mpm_wall_contact_search.h"
 
 #include "comm.h"
 #include "domain.h"
@@ -42,7 +42,7 @@ static constexpr double FILLED = 0.4;    // share of the volume in reach of the 
 // node
 static constexpr double NOT_INSIDE = 0.01;
 
-MPMWallGap::Sums MPMContactSearch::sums(const NodeLine &line) const
+MPMWallGap::Sums MPMWallContactSearch::sums(const NodeLine &line) const
 {
   MPMWallGap::Sums all;
   for (int k = 0; k < line.n; k++)
@@ -50,7 +50,7 @@ MPMWallGap::Sums MPMContactSearch::sums(const NodeLine &line) const
   return all;
 }
 
-void MPMContactSearch::find_contacts(MPMWallNodes &list, double dt, double tolerance)
+void MPMWallContactSearch::find_contacts(MPMWallNodes &list, double dt, double tolerance)
 {
   if (wall.region) return find_region_contacts(list, dt, tolerance);
   MPMField &field = list.field;
@@ -71,7 +71,7 @@ void MPMContactSearch::find_contacts(MPMWallNodes &list, double dt, double toler
 
 /** Maps mean distances of the material from the region to the nodes of lines and single nodes.
  *  Collective. */
-void MPMContactSearch::map_region(MPMWallNodes &list, double dt)
+void MPMWallContactSearch::map_region(MPMWallNodes &list, double dt)
 {
   MPMField &field = list.field;
   // half width of a function: along the axis it is the reach from the surface to a node, and along
@@ -88,7 +88,7 @@ void MPMContactSearch::map_region(MPMWallNodes &list, double dt)
 /** Lines of a region that moves and holds act as soon as nodes on both sides of the surface see
  *  material, which can be half a node spacing in front. Notes the first such place for a warning.
  *  Collective. */
-void MPMContactSearch::check_gaps(MPMWallNodes &list, double dt)
+void MPMWallContactSearch::check_gaps(MPMWallNodes &list, double dt)
 {
   if (first_gap.is_reported()) return;
   map_region(list, dt);
@@ -121,7 +121,7 @@ void MPMContactSearch::check_gaps(MPMWallNodes &list, double dt)
                  wall.kind == MPMWall::STICK ? "stick" : "slip");
 }
 
-void MPMContactSearch::find_region_contacts(MPMWallNodes &list, double dt, double tolerance)
+void MPMWallContactSearch::find_region_contacts(MPMWallNodes &list, double dt, double tolerance)
 {
   const double h = list.field.lattice.h;
   map_region(list, dt);
@@ -146,16 +146,16 @@ static constexpr double STRAIGHT = 0.5;    // least cosine between a line and a 
 static constexpr double DEEPER = 0.1;    // node spacings, for a line whose outer node sees no point
 static constexpr int DEEPER_TRIES = 6;
 
-MPMContactSearch::Key MPMContactSearch::key_of(int axis, bool up, const int *index)
+MPMWallContactSearch::Key MPMWallContactSearch::key_of(int axis, bool up, const int *index)
 {
   return {2 * axis + up, axis == 0 ? 0 : index[0], axis == 1 ? 0 : index[1],
           axis == 2 ? 0 : index[2]};
 }
 
 /** Distance from a face, or from the region (face null). */
-MPMContactSearch::Distance MPMContactSearch::distance_from(MPMWallNodes &list,
-                                                           const MPMBoxFace *face, double dt,
-                                                           double more) const
+MPMWallContactSearch::Distance MPMWallContactSearch::distance_from(MPMWallNodes &list,
+                                                                   const MPMBoxFace *face,
+                                                                   double dt, double more) const
 {
   if (!face) {
     if (!wall.region_moves()) wall.region->prematch();
@@ -166,10 +166,10 @@ MPMContactSearch::Distance MPMContactSearch::distance_from(MPMWallNodes &list,
 
 /** Lines of nodes in front of the wall, each with the node that is nearest to the wall; near: their
  *  blocks. */
-MPMContactSearch::Lines MPMContactSearch::lines_in_front(const MPMWallNodes &list,
-                                                         const MPMBoxFace *face,
-                                                         const Distance &away,
-                                                         std::vector<char> &near) const
+MPMWallContactSearch::Lines MPMWallContactSearch::lines_in_front(const MPMWallNodes &list,
+                                                                 const MPMBoxFace *face,
+                                                                 const Distance &away,
+                                                                 std::vector<char> &near) const
 {
   Lines lines;
   MPMField &field = list.field;
@@ -208,7 +208,8 @@ MPMContactSearch::Lines MPMContactSearch::lines_in_front(const MPMWallNodes &lis
 /** Where the material has left the outer node of a line through the wall, that line cannot act. A
  *  line through the material a little further in can, and explicit steps come back to the wall
  *  within a few steps. */
-void MPMContactSearch::leave_out_acting(MPMWallNodes &list, MPMBoxFace *face, Lines &lines) const
+void MPMWallContactSearch::leave_out_acting(MPMWallNodes &list, MPMBoxFace *face,
+                                            Lines &lines) const
 {
   MPMField &field = list.field;
   const auto key_at = [&](int axis, bool up, int64_t node) {
@@ -247,8 +248,8 @@ void MPMContactSearch::leave_out_acting(MPMWallNodes &list, MPMBoxFace *face, Li
 
 /** How far behind (negative: in front of) a wall at this place on a line is the surface that the
  *  nodes see? The line gets the nodes and weights for this place. */
-double MPMContactSearch::beyond(MPMWallNodes &list, const Key &key, const NearestNode &nearest,
-                                double place, double distance, MPMApproach &line) const
+double MPMWallContactSearch::beyond(MPMWallNodes &list, const Key &key, const NearestNode &nearest,
+                                    double place, double distance, MPMApproach &line) const
 {
   const auto &lattice = list.field.lattice;
   const double h = lattice.h;
@@ -272,8 +273,9 @@ double MPMContactSearch::beyond(MPMWallNodes &list, const Key &key, const Neares
 }
 
 /** Finds the first place with material on a line, and the line of nodes there. x: this place. */
-bool MPMContactSearch::find_surface(MPMWallNodes &list, const Key &key, const NearestNode &nearest,
-                                    const Distance &away, double *x, MPMApproach &found) const
+bool MPMWallContactSearch::find_surface(MPMWallNodes &list, const Key &key,
+                                        const NearestNode &nearest, const Distance &away, double *x,
+                                        MPMApproach &found) const
 {
   const auto &lattice = list.field.lattice;
   const double h = lattice.h;
@@ -318,7 +320,7 @@ bool MPMContactSearch::find_surface(MPMWallNodes &list, const Key &key, const Ne
   return acting.n > 0;
 }
 
-void MPMContactSearch::find_approaches(MPMWallNodes &list, double dt)
+void MPMWallContactSearch::find_approaches(MPMWallNodes &list, double dt)
 {
   MPMField &field = list.field;
   const double seen = 0.5 * (stencil_order(field.options.shape) + 1),
