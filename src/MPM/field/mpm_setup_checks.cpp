@@ -55,6 +55,7 @@ void MPMSetupChecks::run(When when, bool first)
                                    {POINTS, true, &Checks::coupling},
                                    {POINTS, true, &Checks::fixes},
                                    {POINTS, true, &Checks::regions},
+                                   {POINTS, false, &Checks::new_points},
                                    {POINTS, true, &Checks::computes},
                                    {POINTS, true, &Checks::columns},
                                    {POINTS, true, &Checks::skin},
@@ -78,6 +79,12 @@ void MPMSetupChecks::integrators()
 void MPMSetupChecks::forgotten_points()
 {
   field.guard->expect_points(warn_of_forgotten_points(lmp, "mpm", "have no stress"));
+}
+
+void MPMSetupChecks::new_points()
+{
+  if (update->ntimestep != 0) return;    // later, points may be as hot as they have become
+  doubts.check_temperatures(field);
 }
 
 void MPMSetupChecks::coupling()

@@ -163,7 +163,7 @@ void FixMPMHandshake::refuse(bool broken, const std::string &why) const
 void FixMPMHandshake::init()
 {
   field = MPMField::find(lmp, field_name);
-  refuse(!field, "needs the ID of a fix mpm, not " + field_name);
+  refuse(!field, "needs the ID of a fix mpm for its points, not " + field_name);
   for (const auto &zone : zones) {
     const double width = fabs(zone.one - zone.zero);
     refuse(zone.axis >= field->lattice.dim, "cannot have a zone along z in 2d");
