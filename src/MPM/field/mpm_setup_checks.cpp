@@ -31,6 +31,7 @@
 #include "output.h"
 #include "pair.h"
 #include "thermo.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,23 +49,16 @@ void MPMSetupChecks::run(When when, bool first)
     bool of_all;    // of all fields together
     void (MPMSetupChecks::*look)();
   };
-  static constexpr Check list[] = {{POINTS, false, &Checks::integrators},
-                                   {POINTS, false, &Checks::points},
-                                   {POINTS, false, &Checks::rings},
-                                   {POINTS, true, &Checks::forgotten_points},
-                                   {POINTS, true, &Checks::coupling},
-                                   {POINTS, true, &Checks::fixes},
-                                   {POINTS, true, &Checks::regions},
-                                   {POINTS, false, &Checks::new_points},
-                                   {POINTS, true, &Checks::computes},
-                                   {POINTS, true, &Checks::columns},
-                                   {POINTS, true, &Checks::skin},
-                                   {POINTS, true, &Checks::lists_after_restart},
-                                   {PAIRS, false, &Checks::radii},
-                                   {PAIRS, true, &Checks::neighbors},
-                                   {PLACES, false, &Checks::places},
-                                   {PLACES, false, &Checks::locking},
-                                   {LISTS, true, &Checks::lists_of_pairs}};
+  static constexpr Check list[] = {
+      {POINTS, false, &Checks::integrators}, {POINTS, false, &Checks::points},
+      {POINTS, false, &Checks::rings},       {POINTS, true, &Checks::forgotten_points},
+      {POINTS, true, &Checks::coupling},     {POINTS, true, &Checks::fixes},
+      {POINTS, true, &Checks::regions},      {POINTS, false, &Checks::new_points},
+      {POINTS, true, &Checks::computes},     {POINTS, true, &Checks::columns},
+      {POINTS, true, &Checks::skin},         {POINTS, true, &Checks::lists_after_restart},
+      {PAIRS, false, &Checks::radii},        {PAIRS, true, &Checks::neighbors},
+      {PLACES, false, &Checks::places},      {PLACES, false, &Checks::locking},
+      {LISTS, true, &Checks::lists_of_pairs}};
   for (const auto &check : list)
     if (check.when == when && (first || !check.of_all)) (this->*check.look)();
 }
