@@ -200,6 +200,20 @@ SERIAL_TEST(Doubts, TemperaturesOfStrength)
   EXPECT_EQ(told(heated(1700), "a wall has the temperature"), 0);
 }
 
+// what a data file loses, where there is something to lose
+SERIAL_TEST(Doubts, DataFilesOfDeformedPoints)
+{
+  const ScratchFile file("points.data");
+  const auto scene =
+      START + GRID + CONDUCTS + STEP + "velocity all ramp vx 0 1 y 0 0.4 units box\n";
+  const std::string words = "A data file has no deformation",
+                    write = "write_data " + file.name + "\n";
+  EXPECT_EQ(told(scene + write, words), 0);
+  EXPECT_EQ(told(scene + "run 2\n" + write, words), 1);
+  const ScratchFile restart("points.restart");
+  EXPECT_EQ(told(scene + "run 2\nwrite_restart " + restart.name + "\n", words), 0);
+}
+
 // points of an inlet may be of a type that no points had when the pair style looked
 SERIAL_TEST(Doubts, InletsOfNewTypes)
 {
