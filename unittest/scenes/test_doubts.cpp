@@ -170,3 +170,65 @@ SERIAL_TEST(Doubts, RemedyOfTheTimeStep)
   expect_error(scene(""), "give fix mpm/dt step the keyword every 1, strain 0.05");
   for (const char *remedy : {"every 1", "strain 0.05"}) EXPECT_EQ(error_of(scene(remedy)), "");
 }
+
+// temperatures against those of the strength: in degrees Celsius and kelvins, molten, hot walls
+SERIAL_TEST(Doubts, TemperaturesOfStrength)
+{
+  const auto scene = [](double initial, double melting, double reference, double exponent = 1.1,
+                        const std::string &more = "") {
+    return START + GRID +
+        strprintf("fix m all mpm/material density 7830 eos linear 172e9 strength johnson/cook "
+                  "79.6e9 806e6 614e6 0.168 0.0089 1 %g %g %g thermal conducting 460 %g 50\n",
+                  exponent, melting, reference, initial) +
+        more + STEP;
+  };
+  const std::string cold = "is far below the reference temperature", molten = "their strength ends",
+                    wall = "a wall has the temperature 2000";
+  EXPECT_EQ(told(scene(293, 1793, 293), cold), 0);
+  EXPECT_EQ(told(scene(77, 1793, 293), cold), 0);    // liquid nitrogen
+  EXPECT_EQ(told(scene(20, 1793, 293), cold), 1);
+  EXPECT_EQ(told(scene(20, 1520, 20), cold), 0);
+  EXPECT_EQ(told(scene(20, 1793, 293, 0.0), cold), 0);    // it does not soften
+  EXPECT_EQ(told(scene(293, 1793, 293), molten), 0);
+  EXPECT_EQ(told(scene(1800, 1793, 293), molten), 1);
+  const auto heated = [&](double temperature, double exponent = 1.1) {
+    return scene(293, 1793, 293, exponent,
+                 strprintf("fix heat all mpm/heat ylo temperature %g\n", temperature));
+  };
+  EXPECT_EQ(told(heated(2000), wall), 1);
+  EXPECT_EQ(told(heated(2000, 0.0), wall), 0);
+  EXPECT_EQ(told(heated(1700), "a wall has the temperature"), 0);
+}
+
+// what a data file loses, where there is something to lose
+SERIAL_TEST(Doubts, DataFilesOfDeformedPoints)
+{
+  const ScratchFile file("points.data");
+  const auto scene =
+      START + GRID + CONDUCTS + STEP + "velocity all ramp vx 0 1 y 0 0.4 units box\n";
+  const std::string words = "A data file has no deformation",
+                    write = "write_data " + file.name + "\n";
+  EXPECT_EQ(told(scene + write, words), 0);
+  EXPECT_EQ(told(scene + "run 2\n" + write, words), 1);
+  const ScratchFile restart("points.restart");
+  EXPECT_EQ(told(scene + "run 2\nwrite_restart " + restart.name + "\n", words), 0);
+}
+
+// points of an inlet may be of a type that no points had when the pair style looked
+SERIAL_TEST(Doubts, InletsOfNewTypes)
+{
+  for (const char *type : {"1", "3"}) {
+    Scene run(plane("lj", "f f", "0 10 0 10", 3, 0.3) +
+              "region one block 0 3 0 3 INF INF\nregion two block 4 7 0 3 INF INF\n"
+              "region inlet block 1 2 6 8 INF INF\nfix a all mpm 1.0\n"
+              "create_points 1 region one ppc 2\ncreate_points 2 region two ppc 2\nunfix a\n"
+              "group one type 1\ngroup two type 2\nfix a one mpm 1.0\nfix b two mpm 1.0\n"
+              "fix m all mpm/material density 1 linear 100 0.3\npair_style mpm/penalty\n"
+              "pair_coeff * * 50.0\ntimestep 0.01\n"
+              "fix in one mpm/emit " +
+              std::string(type) + " region inlet velocity 5 0 0\n");
+    const auto before = run.lmp->atom->natoms;
+    EXPECT_EQ(run.error("run 30\n"), "");
+    EXPECT_GT(run.lmp->atom->natoms, before + 8) << type;
+  }
+}

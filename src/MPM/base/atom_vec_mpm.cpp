@@ -18,6 +18,7 @@
 #include "modify.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <list>
 
@@ -260,11 +261,31 @@ void AtomVecMPM::data_atom_post(int ilocal)
   points->reset(ilocal);
 }
 
-/** Mass to density for AtomVec::pack_data(). After a sphere style, rmass is mass / (volume of the
+/** Are points of this rank deformed, which a data file cannot tell? */
+static bool any_deformed(Atom *atom)
+{
+  constexpr double LOST = 1.0e-6;    // strain
+  const auto *const points = MPMPoints::get(atom);
+  for (int i = 0; points && i < atom->nlocal; i++) {
+    if (!(atom->vfrac[i] > 0.0)) continue;
+    double strain = std::fabs(points->jacobian(i) - 1.0);
+    for (int c = 0; c < 9; c++)
+      strain = std::max(strain, std::fabs(points->F[i][c] - (c % 4 == 0 ? 1.0 : 0.0)));
+    if (strain > LOST) return true;
+  }
+  return false;
+}
+
+/** Mass to density for AtomVec::pack_data(). It is called for each atom of a rank by itself, so that
+ *  the first rank speaks for its own points alone. After a sphere style, rmass is mass / (volume of the
  *  sphere), and radius the diameter. */
 void AtomVecMPM::pack_data_pre(int ilocal)
 {
   rmass_one = rmass[ilocal];
+  if (ilocal == 0 && comm->me == 0 && any_deformed(atom))
+    error->warning(FLERR,
+                   "A data file has no deformation, stress, and history of material points: after "
+                   "read_data these are undeformed; use write_restart to go on");
   if (!(vfrac[ilocal] > 0.0)) return;
 
   if (after_sphere && rmass_one == 0.0)

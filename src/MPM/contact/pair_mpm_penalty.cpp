@@ -9,6 +9,7 @@
 #include "contact/pair_mpm_penalty.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_lists.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
@@ -20,6 +21,7 @@
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "force.h"
+#include "loads/fix_mpm_emit.h"
 #include "material/material.h"
 #include "math/coulomb.h"
 #include "math_const.h"
@@ -31,6 +33,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -350,6 +353,17 @@ void PairMPMPenalty::init_style()
     mine_largest[atom->type[i]] = std::max(mine_largest[atom->type[i]], initial_radius(i));
     mine_volume[atom->type[i]] = std::max(mine_volume[atom->type[i]], atom->vfrac[i]);
   }
+  // an inlet is filled after this, and its type may have no points before
+  for (const auto *inlet : find_fixes<FixMPMEmit>(lmp))
+    for (std::size_t k = 0; k < nfields; k++) {
+      if (!inlet->emits_into(*fields[k])) continue;
+      const int type = inlet->type_of_points();
+      const double spacing = inlet->largest_spacing(*fields[k]);
+      mine[k * n + type] = 1;
+      mine_largest[type] = std::max(mine_largest[type], 0.5 * spacing);
+      mine_volume[type] = rings ? std::numeric_limits<double>::max()
+                                : std::max(mine_volume[type], pow(spacing, domain->dimension));
+    }
   present.resize(mine.size());
   largest.resize(n);
   most_volume.resize(n);

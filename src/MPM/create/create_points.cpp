@@ -268,8 +268,9 @@ void CreatePoints::place_sites(const Options &options)
     if (!ifix) error->all(FLERR, where, "Create_points fix {} does not exist", fix_id);
     fix = MPMField::find(lmp, fix_id);
     if (!fix)
-      error->all(FLERR, where, "Create_points fix {} is a fix {}, not a fix mpm", fix_id,
-                 ifix->style);
+      error->all(FLERR, where,
+                 "Create_points fix {} is a fix {}, not a fix mpm: use the keyword spacing instead",
+                 fix_id, ifix->style);
   }
 
   // lattice of sites

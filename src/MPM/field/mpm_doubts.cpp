@@ -8,13 +8,17 @@
 
 #include "field/mpm_doubts.h"
 
+#include "atom.h"
 #include "base/mpm_find_fixes.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "field/fix_mpm_material.h"
+#include "field/mpm_field.h"
 #include "force.h"
 #include "material/material.h"
 #include "material/material_point.h"
+#include "material/softening.h"
 #include "region.h"
 #include "update.h"
 
@@ -54,7 +58,16 @@ static const Doubt table[] = {
     {1.0, INF,
      "the inside of a region is a wall for heat, which goes through its surface only: use a region "
      "that touches the body from outside, or side out"},
-    {1.0e-30, 0.35, "radiation needs kelvins: is this one in degrees Celsius?"}};
+    {1.0e-30, 0.35, "radiation needs kelvins: is this one in degrees Celsius?"},
+    {1.0e-30, 0.2,
+     "is the one in degrees Celsius, and the other in kelvins? Give both in the same units"},
+    {1.0, INF,
+     "this material has no strength: use a lower initial temperature, or the melting temperature "
+     "in "
+     "the same units"},
+    {1.0, INF,
+     "material that gets as warm has no strength: is this meant, and in the units of the melting "
+     "temperature?"}};
 
 void MPMDoubts::check(Kind kind, double ratio, const std::string &who, const std::string &what)
 {
@@ -109,6 +122,34 @@ void MPMDoubts::check_regions()
                      "it and a region that is shifted by {:.8g} along {}",
                      region->id, (char) ('x' + d), below ? "lo" : "hi", shift, (char) ('x' + d));
     }
+  }
+}
+
+void MPMDoubts::check_temperatures(const MPMField &field)
+{
+  for (const auto *of : field.materials) {
+    const auto range = softening_range(*of->material);
+    const int column = of->temperature();
+    if (!range || column < 0) continue;
+    double mine[2] = {INF, INF}, all[2];    // least, and minus the largest
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field.is_point(i) || field.material_of(i) != of) continue;
+      mine[0] = std::min(mine[0], of->history[i][column]);
+      mine[1] = std::min(mine[1], -of->history[i][column]);
+    }
+    MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MIN, world);
+    if (all[0] == INF) continue;
+    const std::string who = fmt::format("Fix mpm/material {}", of->id);
+    if (range->reference > 0.0)
+      check(COLD_METAL, all[0] / range->reference, who,
+            fmt::format("the temperature {:.6g} of points is far below the reference temperature "
+                        "{:.6g} of their strength",
+                        all[0], range->reference));
+    if (range->melting > 0.0)
+      check(MOLTEN, -all[1] / range->melting, who,
+            fmt::format("points begin with the temperature {:.6g}, and their strength ends at the "
+                        "melting temperature {:.6g}",
+                        -all[1], range->melting));
   }
 }
 

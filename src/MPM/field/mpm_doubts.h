@@ -34,7 +34,10 @@ class MPMDoubts : protected Pointers {
     TIME_STEP,        ///< the time step over the default one of the units
     FACE_ALONE,       ///< least distance of material from a face with a condition, in node spacings
     INSIDE_REGION,    ///< material that is deep in a region with a condition, in points
-    COLD              ///< temperature of a body that radiates over that of ice that melts
+    COLD,             ///< temperature of a body that radiates over that of ice that melts
+    COLD_METAL,       ///< temperature over the reference temperature of a strength
+    MOLTEN,           ///< temperature over the melting temperature of a strength
+    MOLTEN_WALL       ///< temperature of a wall over this melting temperature
   };
 
   explicit MPMDoubts(class LAMMPS *lmp) : Pointers(lmp) {}
@@ -48,6 +51,9 @@ class MPMDoubts : protected Pointers {
   /** Warns of regions across periodic faces: they have no images, so that walls, surfaces, and
    *  bodies that they describe end there. A region that is the image of another one is the remedy. */
   void check_regions();
+  /** Warns of points that are as warm as the melting temperature of their strength when they are
+   *  new, or far below its reference temperature. Collective. */
+  void check_temperatures(const class MPMField &);
 
  private:
   unsigned told = 0;                // bits of kinds

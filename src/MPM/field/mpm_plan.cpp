@@ -23,6 +23,7 @@
 #include "platform.h"
 
 #include <algorithm>
+#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -36,6 +37,10 @@ void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
   pore_pressures = find_fixes<MPMPorePressure>(lmp);
   std::stable_sort(actions.begin(), actions.end(), [](auto *a, auto *b) {
     return a->turn() < b->turn();
+  });
+  // implicit steps look at what the others have found, in whatever order the fixes are defined
+  std::stable_partition(physics.begin(), physics.end(), [](auto *other) {
+    return strcmp(dynamic_cast<Fix *>(other)->style, "mpm/implicit") != 0;
   });
 
   for (auto *field : fields) field->choose_stress(physics);

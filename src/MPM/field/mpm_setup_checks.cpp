@@ -31,6 +31,7 @@
 #include "output.h"
 #include "pair.h"
 #include "thermo.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,7 @@ void MPMSetupChecks::run(When when, bool first)
                                    {POINTS, true, &Checks::coupling},
                                    {POINTS, true, &Checks::fixes},
                                    {POINTS, true, &Checks::regions},
+                                   {POINTS, false, &Checks::new_points},
                                    {POINTS, true, &Checks::computes},
                                    {POINTS, true, &Checks::columns},
                                    {POINTS, true, &Checks::skin},
@@ -79,6 +81,12 @@ void MPMSetupChecks::integrators()
 void MPMSetupChecks::forgotten_points()
 {
   field.guard->expect_points(warn_of_forgotten_points(lmp, "mpm", "have no stress"));
+}
+
+void MPMSetupChecks::new_points()
+{
+  if (update->ntimestep != 0) return;    // later, points may be as hot as they have become
+  doubts.check_temperatures(field);
 }
 
 void MPMSetupChecks::coupling()

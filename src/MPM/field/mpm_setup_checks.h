@@ -77,6 +77,8 @@ class MPMSetupChecks : protected Pointers {
   void fixes();
   /** Do regions reach across periodic faces? */
   void regions() { doubts.check_regions(); }
+  /** Have new points temperatures that hardly anybody means? */
+  void new_points();
   /** Do computes and columns of the log see a part of points only? */
   void computes();
   void columns();

@@ -59,6 +59,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_block_passes.h"
 #include "field/mpm_field.h"
+#include "field/mpm_setup_checks.h"
 #include "force.h"
 #include "math_extra.h"
 #include "modify.h"
@@ -163,7 +164,12 @@ void FixMPMHandshake::refuse(bool broken, const std::string &why) const
 void FixMPMHandshake::init()
 {
   field = MPMField::find(lmp, field_name);
-  refuse(!field, "needs the ID of a fix mpm, not " + field_name);
+  refuse(!field, "needs the ID of a fix mpm for its points, not " + field_name);
+  for (const auto *elements : modify->get_fix_by_style("^mpm/elements$"))
+    refuse(points_in_both(lmp, elements->groupbit, field->fix.groupbit) > 0,
+           fmt::format("gives weights to material, and the nodes of fix mpm/elements {} have none: "
+                       "give them a fix mpm of their own",
+                       elements->id));
   for (const auto &zone : zones) {
     const double width = fabs(zone.one - zone.zero);
     refuse(zone.axis >= field->lattice.dim, "cannot have a zone along z in 2d");

@@ -135,9 +135,11 @@ void FixMPMImmersed::init()
   const auto *const driver = modify->get_fix_by_id(field_id);
   const auto *const flow = dynamic_cast<const MPMFluid *>(driver);
   if (!flow)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/immersed {}: there is no fix mpm {}, nor a fix mpm/incompressible", id,
-               field_id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix mpm/immersed {}: there is no fix mpm {}, nor a fix mpm/incompressible: define the "
+        "fluid before the run by one of these",
+        id, field_id);
   flow->check_density(density, fmt::format("Fix mpm/immersed {}", id));
   check_grains(driver, flow->spacing());
 }

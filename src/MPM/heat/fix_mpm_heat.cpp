@@ -22,6 +22,7 @@
 #include "force.h"
 #include "implicit/fix_mpm_implicit.h"
 #include "input.h"
+#include "material/softening.h"
 #include "region.h"
 #include "variable.h"
 #include "walls/mpm_region_surface.h"
@@ -234,6 +235,21 @@ void FixMPMHeat::check_places()
 
 void FixMPMHeat::check_temperatures()
 {
+  const auto look = [&](const MPMHeatCondition &wall) {
+    if (wall.kind != MPMHeatCondition::TEMPERATURE || !wall.value[0].variable.empty()) return;
+    for (const auto &of : flow.fields)
+      for (const auto *material : of->field.materials) {
+        const auto range = softening_range(*material->material);
+        if (range && range->melting > 0.0)
+          doubts.check(MPMDoubts::MOLTEN_WALL, wall.value[0].value / range->melting,
+                       fmt::format("Fix mpm/heat {}", id),
+                       fmt::format("a wall has the temperature {:.6g}, and the strength of fix "
+                                   "mpm/material {} ends at {:.6g}",
+                                   wall.value[0].value, material->id, range->melting));
+      }
+  };
+  for (const auto &condition : options.conditions) look(condition);
+  for (const auto &surface : options.surfaces) look(surface.condition);
   if (!options.radiates()) return;
   constexpr double ICE = 273.15;    // kelvins
   double mine = std::numeric_limits<double>::max(), lowest;

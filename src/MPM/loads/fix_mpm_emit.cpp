@@ -162,6 +162,11 @@ double FixMPMEmit::spacing_of_nodes() const
   return fluid ? fluid->spacing() : field->lattice.h;
 }
 
+double FixMPMEmit::largest_spacing(const MPMField &of) const
+{
+  return (spacing > 0.0 ? spacing : of.lattice.h / ppc) * (area > 0.0 ? 1.3 : 1.0 + 1.0e-9);
+}
+
 void FixMPMEmit::velocity_now(double *v)
 {
   update_motion();
@@ -322,6 +327,7 @@ void FixMPMEmit::make_inlet()
                    "Fix mpm/emit {}: points are {:.6g} apart, more than the cells of fix {} {} "
                    "({:.6g}): there will be cells without points",
                    id, layer, grid.style, grid.id, h);
+  if (field && !moves()) list_nodes();    // of blocks that other fixes have found before
 }
 
 /** Velocities of now: of the flow relative to the inlet, and of the inlet. */
@@ -375,7 +381,8 @@ static double reach_in_cells(Shape shape)
 
 void FixMPMEmit::topology_changed(MPMField &one)
 {
-  if (&one == field && !moves()) list_nodes();
+  // other fixes may look at nodes before this one has its inlet, at the start of the first run
+  if (&one == field && inlet && !moves()) list_nodes();
 }
 
 void FixMPMEmit::list_nodes()

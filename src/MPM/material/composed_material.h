@@ -11,6 +11,7 @@
 
 #include "law/heat_curve.h"
 #include "material/parts.h"
+#include "material/softening.h"
 
 #include <cstring>
 #include <functional>
@@ -106,6 +107,7 @@ class ComposedMaterial : public Material {
   bool conductivity_varies() const { return conducts() && !conducting.empty(); }
   Conduction conduction(const double *history, double low, double high) const;
   void warm(double *history, double heat) const override;
+  std::optional<SofteningRange> softening() const;    ///< see softening_range()
   /** See heat_since_start(). */
   double heat_of(const double *history) const;
   void initialized() const override;

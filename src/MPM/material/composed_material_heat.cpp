@@ -390,6 +390,30 @@ law::HeatCurve ComposedMaterial::heat_curve() const
   return {thermal->parameters, melting.point, melting.latent, melting.range};
 }
 
+std::optional<SofteningRange> ComposedMaterial::softening() const
+{
+  for (const auto &law : laws) {
+    const LawInfo &info = *law.info;
+    if (&law == thermal || !info.needs_temperature || !info.needs_temperature(law.parameters))
+      continue;
+    const auto value = [&](std::initializer_list<const char *> names) {
+      for (int k = 0; k < info.nparameters; k++)
+        for (const char *name : names)
+          if (strcmp(info.parameters[k].name, name) == 0) return law.parameters.value[k];
+      return 0.0;
+    };
+    const double melting = value({"TMELT", "TM0"});
+    const SofteningRange range = {value({"TREF"}), melting > 0.0 ? melting : UNBOUNDED};
+    if (melting > 0.0 || range.reference > 0.0) return range;
+  }
+  return {};
+}
+
+std::optional<SofteningRange> MPM_NS::softening_range(const Material &material)
+{
+  return static_cast<const ComposedMaterial &>(material).softening();
+}
+
 double MPM_NS::heat_since_start(const Material &material, const double *history)
 {
   return static_cast<const ComposedMaterial &>(material).heat_of(history);

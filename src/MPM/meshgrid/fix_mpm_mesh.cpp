@@ -113,7 +113,10 @@ void FixMPMMesh::init()
     error->all(FLERR, Error::NOLASTLINE,
                "Fix {} {} acts on points of a fix mpm only, not on those of fix mpm/mesh {}: {}",
                ifix->style, ifix->id, id,
-               utils::strmatch(ifix->style, "^mpm/heat$") ? "use fix mpm/mesh/heat" : "remove it");
+               utils::strmatch(ifix->style, "^mpm/heat$") ? "use fix mpm/mesh/heat"
+                   : utils::strmatch(ifix->style, "^mpm/traction$")
+                   ? "use its keywords pressure and traction"
+                   : "remove it, or give the points a fix mpm");
   }
 
   find_contact();

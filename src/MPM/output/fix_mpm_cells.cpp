@@ -55,8 +55,11 @@ void FixMPMCells::set_size()
 {
   const auto *field = MPMField::find(lmp, field_id);
   if (!field)
-    error->all(FLERR, Error::NOLASTLINE, "Fix {} (style mpm/cells) needs a fix mpm, and {} is none",
-               id, field_id);
+    error->all(
+        FLERR, Error::NOLASTLINE,
+        "Fix {} (style mpm/cells) needs a fix mpm, and {} is none: average columns of compute "
+        "mpm/atom by fix ave/grid",
+        id, field_id);
   for (int d = 0; d < 3; d++)
     ncell[d] = d < dim ? std::max(1, (int) std::lround(domain->prd[d] / field->lattice.h)) : 1;
 }
