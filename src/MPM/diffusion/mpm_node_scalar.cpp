@@ -135,8 +135,6 @@ void MPMNodeScalar::sum_nodes()
   sum(value);
   sum(capacity);
   if (volumes) sum(volume);
-  for (double &C : capacity)
-    if (C <= least) C = 0.0;
   kernels.divide(value.data(), capacity.data(), value.size());
 }
 

@@ -73,9 +73,6 @@ class MPMNodeScalar {
    *  rank's points, until sum_nodes(), keep(), and sum_rates() are called. */
   bool is_level = false;
 
-  /** Capacities of nodes up to this count as none, see MPMStencil::ROUND_OFF. */
-  double least = 0.0;
-
   explicit MPMNodeScalar(MPMField &field) : field(field) {}
 
   /** Start of a run. slopes: points have gradients g_p; volumes: volumes of nodes are wanted. */

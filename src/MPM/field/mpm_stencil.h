@@ -35,7 +35,7 @@ class MPMStencil {
    *  at the distance e behind a node, in node spacings, it has the mass e^2, and the force e and
    *  stiffness e^2: it moves by 1/e, and gives points in reach a strain that does not depend on e.
    *  Whether such a node is there must not depend on round-off, as in regular arrays of points, where
-   *  functions end in planes of nodes. The same holds for the capacity and the rate of a scalar. */
+   *  functions end in planes of nodes. */
   static constexpr double ROUND_OFF = 1.0e-20;
 
   explicit MPMStencil(const MPMField &field) : field(field) {}

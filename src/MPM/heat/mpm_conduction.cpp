@@ -163,7 +163,6 @@ void MPMConduction::keep_present(const std::vector<signed char> &all)
     least_capacity = greatest_capacity > 0.0 ? std::min(least_capacity, capacity) : capacity;
     greatest_capacity = std::max(greatest_capacity, capacity);
   }
-  scalar.least = MPMStencil::ROUND_OFF * least_capacity * field.lattice.cell_volume();
   if (greatest_capacity > 0.0) {
     slowest *= least_capacity / greatest_capacity;
     own_share = share_of_own_rate(greatest_capacity / least_capacity);
