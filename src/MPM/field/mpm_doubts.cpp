@@ -62,9 +62,8 @@ static const Doubt table[] = {
     {1.0e-30, 0.2,
      "is the one in degrees Celsius, and the other in kelvins? Give both in the same units"},
     {1.0, INF,
-     "this material has no strength: use a lower initial temperature, or the melting temperature "
-     "in "
-     "the same units"},
+     "this material has no strength: use a lower initial temperature, or give the melting "
+     "temperature in the same units"},
     {1.0, INF,
      "material that gets as warm has no strength: is this meant, and in the units of the melting "
      "temperature?"}};
