@@ -51,10 +51,10 @@ def test_many_inputs_with_mistakes_and_scenes():
 def test_compositions():
     # few of them: another 5000 take hours
     with tempfile.TemporaryDirectory() as folder:
-        result = mt.run([sys.executable, FUZZ, "--inputs", "0", "--scenes", "0", "--compositions", "3", "--seed", "1",
+        result = mt.run([sys.executable, FUZZ, "--inputs", "0", "--scenes", "0", "--compositions", "6", "--seed", "1",
                          "--jobs", "1", "--out", folder], timeout=1800)
     mt.ok(result)
-    assert re.search(r"^3 compositions: ", result.output, re.M), result.output
+    assert re.search(r"^6 compositions: ", result.output, re.M), result.output
 
 
 def write_program(path, command):
