@@ -9,6 +9,7 @@
 #include "field/fix_mpm_material.h"
 
 #include "base/mpm_input.h"
+#include "field/mpm_doubts.h"
 #include "material/batch_kernels.h"
 #include "material/material.h"
 #include "material/material_point.h"
@@ -72,8 +73,7 @@ static void check_gas(LAMMPS *lmp, const FixMPMMaterial &fix)
 {
   constexpr double SAME = 0.02;
   const Material &material = *fix.material;
-  if (!material.conducts() || material.describe().find("eos ideal/gas") == std::string::npos)
-    return;
+  if (!material.conducts() || !is_ideal_gas(material)) return;
   const MaterialPoint point(material);
   const double T = point.batch.history[fix.temperature()][0],
                E = point.batch.history[fix.find_history("energy")][0],

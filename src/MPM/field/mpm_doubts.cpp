@@ -152,6 +152,11 @@ void MPMDoubts::check_temperatures(const MPMField &field)
   }
 }
 
+bool LAMMPS_NS::is_ideal_gas(const Material &material)
+{
+  return material.describe().find("eos ideal/gas") != std::string::npos;
+}
+
 MPMRestModuli::MPMRestModuli(const Material &material)
 {
   if (!material.is_solid() || !material.has_tangent()) return;

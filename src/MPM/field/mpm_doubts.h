@@ -60,6 +60,9 @@ class MPMDoubts : protected Pointers {
   std::set<std::string> told_of;    // IDs of regions
 };
 
+/** Is it a gas whose pressure is absolute, eos ideal/gas? */
+bool is_ideal_gas(const MPM_NS::Material &);
+
 /** Moduli of a solid at rest, by its tangent along x and y [pressure]; zero for fluids, and if the
  *  law has no tangent of its own. */
 struct MPMRestModuli {

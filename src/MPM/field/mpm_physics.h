@@ -28,6 +28,9 @@ class MPMPhysics {
  public:
   /** Start of a run: check the settings, and declare node fields (MPMNodes::add_field). */
   virtual void init_physics(MPMPlan &) = 0;
+  /** Does init_physics() need what that of all others has found, in whatever order fixes are
+   *  defined? */
+  virtual bool needs_others() const { return false; }
 
   /** Append the stages for one place in the step to the plan (MPMPlan::each, MPMPlan::together). */
   virtual void add_stages(MPMPlan &, MPMPlan::Place) = 0;

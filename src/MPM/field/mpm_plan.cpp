@@ -23,7 +23,6 @@
 #include "platform.h"
 
 #include <algorithm>
-#include <cstring>
 
 using namespace LAMMPS_NS;
 
@@ -38,9 +37,8 @@ void MPMPlan::make(const std::function<void(MPMPlan &)> &scheme)
   std::stable_sort(actions.begin(), actions.end(), [](auto *a, auto *b) {
     return a->turn() < b->turn();
   });
-  // implicit steps look at what the others have found, in whatever order the fixes are defined
-  std::stable_partition(physics.begin(), physics.end(), [](auto *other) {
-    return strcmp(dynamic_cast<Fix *>(other)->style, "mpm/implicit") != 0;
+  std::stable_partition(physics.begin(), physics.end(), [](const auto *other) {
+    return !other->needs_others();
   });
 
   for (auto *field : fields) field->choose_stress(physics);

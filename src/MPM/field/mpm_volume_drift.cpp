@@ -26,6 +26,7 @@
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_doubts.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"
@@ -84,12 +85,6 @@ static double integral(Shape shape, double t)
   return t < 0.0 ? 0.5 - half : 0.5 + half;
 }
 
-/** Is its pressure absolute, so that sums over points that are not integrals push nodes? */
-static bool is_gas(const Material &material)
-{
-  return material.describe().find("eos ideal/gas") != std::string::npos;
-}
-
 void MPMVolumeDrift::init()
 {
   corrects = field.options.drift > 0.0 && !field.options.averages_strain() &&
@@ -101,7 +96,7 @@ void MPMVolumeDrift::init()
   gas = {};
   gases.clear();
   for (const auto *material : field.materials)
-    if (is_gas(*material->material)) gases.insert(material);
+    if (is_ideal_gas(*material->material)) gases.insert(material);
   stiffness.clear();
   if (!corrects) return;
   const double scale = force->mvv2e * force->nktv2p;    // of density velocity^2, in pressure units

@@ -45,6 +45,7 @@ class FixMPMImplicit : public FixMPMState, public MPMPhysics, private MPMImplici
   void restart(char *) override;
 
   void init_physics(MPMPlan &) override;
+  bool needs_others() const override { return true; }
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   bool looks_beyond_points() const override { return false; }
   /** True except for the mid-point rule, which keeps angular momentum with moving least squares. */
