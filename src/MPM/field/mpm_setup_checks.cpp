@@ -25,6 +25,7 @@
 #include "force.h"
 #include "group.h"
 #include "lammps.h"
+#include "material/material.h"
 #include "modify.h"
 #include "neigh_list.h"
 #include "neighbor.h"
