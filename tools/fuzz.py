@@ -168,7 +168,8 @@ class Done:
             return "large"
         notice = re.search(r"^WARNING.*(finite|\bnan\b|\binf\b)|^ERROR", self.output.split("FUZZ: the end")[0],
                            re.M | re.I)
-        if not notice and (any(map(not_finite, self.output.splitlines())) or state_not_finite(folder)):
+        if not notice and (any(map(not_finite, self.output.splitlines())) or
+                           state_not_finite(folder, "Loop time" in self.output)):
             return "nan"
         return "ran" if "FUZZ: the end" in self.output or not self.code else "error"
 
@@ -190,12 +191,15 @@ def not_finite(line):
         return False
 
 
-def state_not_finite(folder):
+def state_not_finite(folder, forces):
+    """forces: LAMMPS sets those of atoms in the first run, not before"""
     for name in ("fuzz.state", "fuzz.stress"):
         path = os.path.join(folder, name)
         if os.path.exists(path):
             with open(path, "rb") as file:
                 rows = file.read()
+            if name == "fuzz.state" and not forces:
+                rows = b"\n".join(b" ".join(row.split()[:8]) for row in rows.splitlines())
             if re.search(rb"\s-?(nan|inf)\b", rows, re.I):
                 return True
     return False
