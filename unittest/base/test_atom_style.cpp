@@ -538,6 +538,7 @@ TEST(CreatePoints, BadInput)
       {"create_points 1 region r spacing 1e-17", "spacing 1e-17 is too fine"},
       {"create_points 1 region r spacing 1e-200", "Create_points spacing"},
       {"create_points 1 box spacing 1e-10", "would have to look at 1e+30 sites"},
+      {"create_points 1 box spacing 1e-4", "would have to look at 1e+12 sites"},
       {"create_points 1 region r spacing 0.1 ppc 2", "spacing and ppc cannot be given together"},
       {"create_points 1 region r fix", "create_points fix"},
       {"create_points 1 region r fix nofix", "fix nofix does not exist"},

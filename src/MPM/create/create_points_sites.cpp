@@ -37,7 +37,7 @@ using namespace MPM_NS;
 static constexpr double TOLERANCE = 1.0e-6;       // in spacings, for positions that coincide
 static constexpr double INFINITE = 1.0e19;        // bounds of regions beyond it are INF
 static constexpr double MAX_INDEX = 1.0e15;       // largest index of a lattice site
-static constexpr double MAX_SITES = 9.0e18;       // most sites that a command looks at
+static constexpr double MAX_SITES = 1.0e11;       // most sites that a rank looks at: an hour
 static constexpr bigint MAX_COUNT = 200000000;    // sites per rank looked at outside the box
 
 /** Keyword split: a variable of the position says which sites are divided. */
@@ -405,10 +405,10 @@ bigint CreatePoints::ranges_in_box(Range *range) const
     range[d] = {first, std::max(end - first, (bigint) 0)};
     nsite *= range[d].n;
   }
-  if (nsite > MAX_SITES)
+  if (nsite > MAX_SITES * comm->nprocs)
     error->all(FLERR, Error::NOLASTLINE,
                "Create_points would have to look at {:.3g} sites: use a "
-               "wider spacing or a region with a bounding box",
+               "wider spacing, a smaller region, or one with a bounding box",
                nsite);
   return range[0].n * range[1].n * range[2].n;
 }
