@@ -9,6 +9,7 @@
 #include "elements/fix_mpm_elements.h"
 
 #include "atom.h"
+#include "base/mpm_ghosts.h"
 #include "base/mpm_image.h"
 #include "base/mpm_input.h"
 #include "base/mpm_lists.h"
@@ -25,8 +26,6 @@
 #include "math_extra.h"
 #include "mesh/curved_surface.h"
 #include "mesh/rims.h"
-#include "neighbor.h"
-#include "pair.h"
 #include "step/mpm_grains.h"
 #include "update.h"
 
@@ -184,10 +183,7 @@ void FixMPMElements::init()
   if (bending) internal->find_bending_frequency(groupbit, nodes.ids);
 
   // nodes of elements may be ghosts; elements that have stretched since need comm_modify
-  // one that is less than that of a pair style is a warning of LAMMPS
-  const double extent = largest_extent();
-  if (!force->pair || extent > force->pair->cutforce + neighbor->skin)
-    comm->cutghostuser = std::max(comm->cutghostuser, extent);
+  need_ghosts_within(lmp, largest_extent());
 }
 
 std::vector<NearNodes::Edge> FixMPMElements::edges() const
