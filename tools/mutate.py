@@ -443,6 +443,12 @@ def copy_tree(tree, changed):
 
 def build_random(tree, options):
     """(mutants in a copy of the source tree, how many places were drawn for them)"""
+    build = os.path.join(tree, "build", "quick")
+    kept = os.path.join(build, "random.json")
+    if options.no_build:    # the sources may be others by now
+        with open(kept) as file:
+            mutants = [mutants_random.RandomMutant(*entry) for entry in json.load(file)]
+        return mutants, mutants[-1].number
     size = 2 * options.random
     mutants = []
     for mutant in mutants_random.draw(SOURCES, options.seed):
@@ -452,14 +458,8 @@ def build_random(tree, options):
                 other.file == mutant.file and other.lines[0] <= mutant.lines[1] and mutant.lines[0] <= other.lines[1]
                 for other in mutants):
             mutants.append(mutant)
-    build = os.path.join(tree, "build", "quick")
     environment = dict(os.environ, MPM_BUILD_DIR=build, MPM_CMAKE="-D MPM_QUICK=on", MAKEFLAGS="-k", MPM_JOBS=str(options.jobs))
-    kept = os.path.join(build, "random.json")
-    if options.no_build:
-        with open(kept) as file:
-            numbers = json.load(file)
-        mutants = [mutant for mutant in mutants if mutant.number in numbers]
-    while not options.no_build:
+    while True:
         copy_tree(tree, mutants_random.files(ROOT, mutants, size))
         done = subprocess.run([os.path.join(tree, "tools", "build.sh"), "unittests"], env=environment,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
@@ -467,14 +467,7 @@ def build_random(tree, options):
             break
         with open(os.path.join(build, "build.log")) as file:
             log = file.read()
-        # what a compiler says first is the reason of what it says then
-        first = [part.partition(" error: ")[0].rpartition("\n")[2] for part in log.split("***") if " error: " in part]
-        for text in ("\n".join(first), log):
-            lines = {(file, int(line) - 1) for file, line in re.findall(r"src/MPM/([\w/.]+):(\d+)", text)}
-            wrong = [mutant for mutant in mutants if any(
-                file == mutant.file and mutant.lines[0] <= line <= mutant.lines[1] for file, line in lines)]
-            if wrong:
-                break
+        wrong = mutants_in(mutants, log)
         if not wrong:
             sys.exit(done.stdout)
         for mutant in wrong:
@@ -482,8 +475,21 @@ def build_random(tree, options):
         mutants = [mutant for mutant in mutants if mutant not in wrong]
     mutants = mutants[:options.random]
     with open(kept, "w") as file:
-        json.dump([mutant.number for mutant in mutants], file)
+        json.dump([(mutant.name, mutant.number, mutant.file, mutant.told) for mutant in mutants], file)
     return mutants, mutants[-1].number
+
+
+def mutants_in(mutants, log):
+    """those that the errors of a compiler are about"""
+    # what it says first is the reason of what it says then
+    first = [part.partition(" error: ")[0].rpartition("\n")[2] for part in log.split("***") if " error: " in part]
+    for text in ("\n".join(first), log):
+        lines = {(file, int(line) - 1) for file, line in re.findall(r"src/MPM/([\w/.]+):(\d+)", text)}
+        found = [mutant for mutant in mutants if any(
+            file == mutant.file and mutant.lines[0] <= line <= mutant.lines[1] for file, line in lines)]
+        if found:
+            break
+    return found
 
 
 def words_of_cases(known, test, names):
