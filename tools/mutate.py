@@ -524,9 +524,9 @@ def try_random(tests, mutant, cases, folder):
     cases = sorted((case for case in cases if mutant.number in case.reached), key=lambda case: case.seconds)
     seconds, tried, most = 0.0, 0, 1.0
     while tried < len(cases) and seconds < LONGEST:
-        batch = {}    # of one test each, as many as take twice as long as those before
-        once = 0.0
-        while tried < len(cases) and (not batch or once + cases[tried].seconds < most):
+        batch = {}    # of one test each, as many as take twice as long as those before, and fit into a command
+        once, end = 0.0, tried + 300
+        while tried < min(end, len(cases)) and (not batch or once + cases[tried].seconds < most):
             batch.setdefault(cases[tried].test, []).append(cases[tried])
             once += cases[tried].seconds
             tried += 1
