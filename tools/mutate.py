@@ -532,10 +532,14 @@ def try_random(tests, mutant, cases, folder):
             tried += 1
         seconds, most = seconds + once, 2.0 * most
         for test, some in batch.items():
-            with tempfile.TemporaryDirectory(dir=folder) as own:
-                status, _ = run_command(tests[test], words_of_cases(tests[test], test, [case.name for case in some]), own,
-                                        30 + 10 * sum(case.seconds for case in some), MPM_MUTANT=str(mutant.number))
-            if status != 0:
+            def run(number):
+                with tempfile.TemporaryDirectory(dir=folder) as own:
+                    return run_command(tests[test], words_of_cases(tests[test], test, [case.name for case in some]), own,
+                                       30 + 10 * sum(case.seconds for case in some), MPM_MUTANT=str(number))[0]
+
+            status = run(mutant.number)
+            # it must be the mutant, and not the order of cases, or the machine
+            if status != 0 and run(0) == 0 and run(mutant.number) != 0:
                 return KILLED, test + ("" if status else " (time)"), time.time() - start
     return SURVIVED, "tried %d of %d cases that reach it" % (tried, len(cases)), time.time() - start
 
