@@ -11,14 +11,16 @@ is compiled; the build tree itself (MPM_BUILD_DIR, default ./build) is only brou
 tools/build.sh.  Kernels and laws are compiled and run for the baseline instruction set alone.
 
   --list FILE    mutants (default: tools/mutants.txt, which tells its format)
-  --random N     instead of those of the list: N mistakes anywhere in src/MPM (mutants_random.py), each tried with
-                 the tests of its room, of rooms that include its header, and the scenes, the short ones first, in
-                 the build tree of tools/test.sh, ./build/quick
+  --random N     instead of those of the list: N mistakes anywhere in src/MPM, all of them compiled once in a copy of the
+                 source tree, where each is a choice that is made while the program runs (mutants_random.py).  One run of
+                 the suite of tools/test.sh tells which cases reach which mistake; these are tried, the short ones
+                 first, until one fails
+  --tree FOLDER  the copy of --random (default: BUILD/random)
   --jobs N       mutants at a time (default: MPM_JOBS, or all cores)
   --sample N     only so many of them, drawn at random
   --seed N       for another draw, of --sample and --random (default: 0)
   --check        only look whether the list fits the source and the tests, without a build tree
-  --no-build     the test programs are up to date
+  --no-build     the test programs are up to date; with --random also what is known of their cases
   --keep         leave what was compiled in BUILD/mutants
 
 Ends with a table and the share of mutants that were killed; the exit status is 1 unless it is all.
@@ -27,7 +29,6 @@ Ends with a table and the share of mutants that were killed; the exit status is 
 import argparse
 import concurrent.futures
 import fnmatch
-import glob
 import json
 import math
 import os
@@ -42,12 +43,11 @@ import tempfile
 import time
 
 import mutants_random
-from changed_rooms import rooms_of
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SOURCES = os.path.join(ROOT, "src", "MPM")
 BUILD = os.path.abspath(os.environ.get("MPM_BUILD_DIR") or
-                        os.path.join(ROOT, "build", "quick" if "--random" in sys.argv else ""))
+                        os.path.join(ROOT, "build"))
 LIBRARY = os.path.join(BUILD, "python", "lammps", "liblammps.so")    # target mpm_python
 KILLED, SURVIVED, BROKEN, STALE = "killed", "survived", "does not compile", "stale"
 
@@ -56,13 +56,10 @@ class Mutant:
     """name, file in src/MPM, old and new text, and the tests that ought to see it: (test, filter)"""
 
     def __init__(self, name):
-        self.name, self.file, self.old, self.new, self.tests = name, "", [], [], []
-        self.whole = self.told = None    # of a random one: the mutated file, and what the mistake is
+        self.name, self.file, self.old, self.new, self.tests, self.told = name, "", [], [], [], ""
 
     def source(self):
         """the mutated file, or None when the old text is not there exactly once"""
-        if self.whole:
-            return self.whole
         with open(os.path.join(SOURCES, self.file)) as file:
             text = file.read()
         words = r"\s+".join(re.escape(word) for word in " ".join(self.old).split())
@@ -97,29 +94,6 @@ def read_list(path):
     return mutants
 
 
-def draw(count, seed):
-    found = []
-    for name, file, text, told in mutants_random.draw(SOURCES, count, seed):
-        found.append(Mutant(name))
-        found[-1].file, found[-1].whole, found[-1].told = file, text, told
-    return found
-
-
-def tests_of_rooms(tree, file):
-    """(test, all of its cases): of the room of a source, of those that include its header, and the scenes; in each the
-    ones first that took the least time in their last run"""
-    header = "src/MPM/" + os.path.splitext(file)[0] + ".h"
-    own = file.partition("/")[0]
-    rooms = [own] + sorted(rooms_of([header]) - {own, "scenes"}) + ["scenes"]
-    found = []
-    for name, test in tree.tests.items():
-        labels = next((entry["value"] for entry in test["properties"] if entry["name"] == "LABELS"), [])
-        room = next((k for k, room in enumerate(rooms) if room in labels), None)
-        if room is not None and "long" not in labels and tree.program_of(name):
-            found.append((room, tree.cost(name), name))
-    return [(name, "*") for _, _, name in sorted(found)]
-
-
 def program(test):
     """test_contact.np3 -> test_contact"""
     return test.partition(".")[0]
@@ -142,6 +116,16 @@ def not_in_test(test, names):
 
 # ---------------------------------------------------------------- how things are compiled and run
 
+def tests_of(build):
+    """by name what ctest knows of them"""
+    shown = quiet(["ctest", "--show-only=json-v1"], cwd=build)
+    return {test["name"]: test for test in json.loads(shown)["tests"]}
+
+
+def property_of(test, name):
+    return next((entry["value"] for entry in test["properties"] if entry["name"] == name), [])
+
+
 class BuildTree:
     """commands of the build tree: objects, test programs, tests"""
 
@@ -162,23 +146,7 @@ class BuildTree:
         # most programs have the package in a shared library, which is linked again instead of them
         library = os.path.join(BUILD, "CMakeFiles", "mpm_python.dir", "link.txt")
         self.library = self.read_link("", "mpm_python") if os.path.exists(library) else []
-        shown = quiet(["ctest", "--show-only=json-v1"], cwd=BUILD)
-        self.tests = {test["name"]: test for test in json.loads(shown)["tests"]}
-
-        path = os.path.join(BUILD, "Testing", "Temporary", "CTestCostData.txt")
-        with open(path if os.path.exists(path) else os.devnull) as file:
-            self.costs = {words[0]: float(words[2]) for words in map(str.split, file) if len(words) == 3}
-
-    def cost(self, test):
-        """seconds that it took in its last run by ctest; a minute if there was none"""
-        return self.costs.get(test) or 60.0
-
-    def program_of(self, test):
-        """the program that a test runs: one of its own, or that of its room; None: it is a script"""
-        for word in self.tests[test]["command"]:
-            if os.path.dirname(word) == os.path.join(BUILD, "unittest"):
-                return os.path.basename(word)
-        return None
+        self.tests = tests_of(BUILD)
 
     @staticmethod
     def read_link(folder, name):
@@ -256,19 +224,26 @@ def link_program(tree, name, objects, folder):
 
 
 def run_test(tree, test, names, executable, folder, limit):
+    """exit status, None when it took too long, and output"""
+    known = tree.tests[test]
+    command = [executable if os.path.basename(word) == program(test) else word
+               for word in known["command"]]
+    return run_command(known, command + cases_of_program(test, names), folder, limit)
+
+
+def cases_of_program(test, names):
+    """arguments for these cases only"""
+    # with several processes the others would wait for one that fails
+    return ["--gtest_filter=" + names] + ([] if ".np" in test and not test.endswith(".np1") else ["--gtest_fail_fast"])
+
+
+def run_command(known, command, folder, limit, **variables):
     """exit status, None when it took too long, and output; the limit is one of processor time for each
     process, so that a busy machine changes nothing, and thirty times as long for what sleeps"""
-    known = tree.tests[test]
-    command = [executable if os.path.basename(word) == tree.program_of(test) else word
-               for word in known["command"]]
-    command.append("--gtest_filter=" + names)
-    if ".np" not in test or test.endswith(".np1"):    # or else other ranks would wait
-        command.append("--gtest_fail_fast")
     environment = dict(os.environ, MPM_ISA="baseline")
-    for entry in known["properties"]:
-        if entry["name"] == "ENVIRONMENT":
-            environment.update(word.split("=", 1) for word in entry["value"])
+    environment.update(word.split("=", 1) for word in property_of(known, "ENVIRONMENT"))
     environment.pop("GTEST_OUTPUT", None)
+    environment.update(variables)
     seconds = max(1, math.ceil(limit))
     process = subprocess.Popen(["sh", "-c", 'ulimit -t %d; exec "$@"' % seconds, "sh"] + command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -343,7 +318,7 @@ def try_mutant(tree, mutant, times, keep):
 
     objects, built = {}, set()
     for test, names in mutant.tests:
-        name = tree.program_of(test)
+        name = program(test)
         if name not in built:
             for path in tree.parts(name):
                 if path in objects or not tree.depends(path, mutant.file):
@@ -376,6 +351,7 @@ def main():
     parser.add_argument("--jobs", type=int,
                         default=int(os.environ.get("MPM_JOBS") or os.cpu_count()))
     parser.add_argument("--random", type=int)
+    parser.add_argument("--tree")
     parser.add_argument("--sample", type=int)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--check", action="store_true")
@@ -384,7 +360,7 @@ def main():
     options = parser.parse_args()
 
     if options.random:
-        return run(draw(options.random, options.seed), options, None)
+        return run_random(options)
     mutants = chosen(read_list(options.list), options.patterns)
     if options.sample is not None and options.sample < len(mutants):
         mutants = random.Random(options.seed).sample(mutants, options.sample)
@@ -402,38 +378,191 @@ def main():
 
 
 def run(mutants, options, programs):
-    """tries all of them, with these programs; None: those of all rooms, which the suite has run"""
-    if not programs:
-        programs = [os.path.basename(path) for path in glob.glob(os.path.join(BUILD, "unittest", "test_*"))]
-        os.environ["MPM_QUICK"] = "1"    # as in tools/test.sh
     tree = BuildTree(programs, not options.no_build)
-    for mutant in mutants:
-        if mutant.whole:
-            mutant.tests = tests_of_rooms(tree, mutant.file)
     wanted = sorted({test for mutant in mutants for test in mutant.tests})
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         folder = os.path.join(BUILD, "mutants")
         os.makedirs(folder, exist_ok=True)
-        if mutants[0].whole:
-            times = {key: tree.cost(key[0]) for key in wanted}
-        else:
-            times = check_tests(tree, wanted, folder, pool)
-            print("%d tests pass without mutants, in %.0f s" % (len(times), sum(times.values())), flush=True)
-        futures = [pool.submit(try_mutant, tree, mutant, times, options.keep) for mutant in mutants]
-        wide = max(len(mutant.name) for mutant in mutants)
-        results = []
-        for mutant, future in zip(mutants, futures):
-            what, by, seconds = future.result()
-            results.append(what)
-            print("%-*s  %-16s %5.0f s  %s" % (wide, mutant.name, what, seconds, by), flush=True)
-            if mutant.told:
-                print("    " + mutant.told, flush=True)
+        times = check_tests(tree, wanted, folder, pool)
+        print("%d tests pass without mutants, in %.0f s" % (len(times), sum(times.values())), flush=True)
+        return report(mutants, pool.map(lambda mutant: try_mutant(tree, mutant, times, options.keep), mutants))
 
-    tried = results.count(KILLED) + results.count(SURVIVED)
+
+def report(mutants, tried):
+    """the table, and the exit status"""
+    wide = max(len(mutant.name) for mutant in mutants)
+    results = []
+    for mutant, (what, by, seconds) in zip(mutants, tried):
+        results.append(what)
+        print("%-*s  %-16s %5.0f s  %s" % (wide, mutant.name, what, seconds, by), flush=True)
+        if what == SURVIVED and mutant.told:
+            print("    " + mutant.told, flush=True)
+    count = results.count(KILLED) + results.count(SURVIVED)
     print("%d of %d mutants killed (%.0f %%), %d survived, %d do not compile, %d stale" % (
-        results.count(KILLED), tried, 100.0 * results.count(KILLED) / max(tried, 1),
+        results.count(KILLED), count, 100.0 * results.count(KILLED) / max(count, 1),
         results.count(SURVIVED), results.count(BROKEN), results.count(STALE)))
     return 0 if results.count(KILLED) == len(results) else 1
+
+
+# ---------------------------------------------------------------- mutants at random places
+
+NOT_OF_THE_PROGRAM = {"build", "plugin", "fuzz", "sanitize"}    # labels of tests that compile, or cannot fail by a mutant
+LONGEST = 300    # seconds that the cases take that a mutant is tried with
+
+
+class Case:
+    """a case of a test of ctest: its seconds, and the numbers of the mutants that it reaches"""
+
+    def __init__(self, test, name, seconds, reached):
+        self.test, self.name, self.seconds, self.reached = test, name, seconds, set(reached)
+
+
+def copy_tree(tree, changed):
+    """the source tree with some other texts; a file that is as it was keeps its time"""
+    listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, stdout=subprocess.PIPE, text=True,
+                            check=True).stdout.split("\n")
+    for path in sorted(set(filter(None, listed)) | set(changed)):
+        old, new = os.path.join(ROOT, path), os.path.join(tree, path)
+        if path in changed:
+            text = changed[path].encode()
+        elif os.path.exists(old):
+            with open(old, "rb") as file:
+                text = file.read()
+        else:
+            continue
+        if os.path.exists(new):
+            with open(new, "rb") as file:
+                if file.read() == text:
+                    continue
+        os.makedirs(os.path.dirname(new), exist_ok=True)
+        with open(new, "wb") as file:
+            file.write(text)
+        if path not in changed:
+            shutil.copymode(old, new)
+
+
+def build_random(tree, options):
+    """(mutants in a copy of the source tree, how many places were drawn for them)"""
+    build = os.path.join(tree, "build", "quick")
+    kept = os.path.join(build, "random.json")
+    if options.no_build:    # the sources may be others by now
+        with open(kept) as file:
+            mutants = [mutants_random.RandomMutant(*entry) for entry in json.load(file)]
+        return mutants, mutants[-1].number
+    size = 2 * options.random
+    mutants = []
+    for mutant in mutants_random.draw(SOURCES, options.seed):
+        if len(mutants) >= 1.1 * options.random or mutant.number >= size:
+            break
+        if mutant.edits and not any(
+                other.file == mutant.file and other.lines[0] <= mutant.lines[1] and mutant.lines[0] <= other.lines[1]
+                for other in mutants):
+            mutants.append(mutant)
+    environment = dict(os.environ, MPM_BUILD_DIR=build, MPM_CMAKE="-D MPM_QUICK=on", MAKEFLAGS="-k", MPM_JOBS=str(options.jobs))
+    while True:
+        copy_tree(tree, mutants_random.files(ROOT, mutants, size))
+        done = subprocess.run([os.path.join(tree, "tools", "build.sh"), "unittests"], env=environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        if done.returncode == 0:
+            break
+        with open(os.path.join(build, "build.log")) as file:
+            log = file.read()
+        wrong = mutants_in(mutants, log)
+        if not wrong:
+            sys.exit(done.stdout)
+        for mutant in wrong:
+            print("not to be chosen while the program runs: " + mutant.told, flush=True)
+        mutants = [mutant for mutant in mutants if mutant not in wrong]
+    mutants = mutants[:options.random]
+    with open(kept, "w") as file:
+        json.dump([(mutant.name, mutant.number, mutant.file, mutant.told) for mutant in mutants], file)
+    return mutants, mutants[-1].number
+
+
+def mutants_in(mutants, log):
+    """those that the errors of a compiler are about"""
+    # what it says first is the reason of what it says then
+    first = [part.partition(" error: ")[0].rpartition("\n")[2] for part in log.split("***") if " error: " in part]
+    for text in ("\n".join(first), log):
+        lines = {(file, int(line) - 1) for file, line in re.findall(r"src/MPM/([\w/.]+):(\d+)", text)}
+        found = [mutant for mutant in mutants if any(
+            file == mutant.file and mutant.lines[0] <= line <= mutant.lines[1] for file, line in lines)]
+        if found:
+            break
+    return found
+
+
+def words_of_cases(known, test, names):
+    """the command for these cases of a test, by GoogleTest or in Python"""
+    if any(word.endswith(".py") for word in known["command"]):
+        return known["command"] + names
+    return known["command"] + cases_of_program(test, ":".join(names))
+
+
+def cases_of(tests, test, folder, known):
+    """all cases of a test that pass without mutants; known: as an earlier call has found"""
+    results, bits = os.path.join(folder, test + ".json"), os.path.join(folder, test + ".bits")
+    if not (known and os.path.exists(results)):
+        with open(bits, "wb") as file:
+            file.write(bytes(100000))
+        with tempfile.TemporaryDirectory(dir=folder) as own:
+            run_command(tests[test], tests[test]["command"], own, 1200, GTEST_OUTPUT="json:" + results, MPM_REACHED=bits)
+    if not os.path.exists(results):
+        return []
+    with open(results) as file:
+        suites = json.load(file)["testsuites"]
+    python = any(word.endswith(".py") for word in tests[test]["command"])
+    return [Case(test, case["name"] if python else suite["name"] + "." + case["name"], float(case.get("seconds", 0.0)),
+                 [int(word) for word in case.get("reached", "").split()])
+            for suite in suites for case in suite["testsuite"]
+            if case["result"] == "COMPLETED" and not case.get("failures")]
+
+
+def try_random(tests, mutant, cases, folder):
+    """verdict, the cases that have killed it, time"""
+    start = time.time()
+    cases = sorted((case for case in cases if mutant.number in case.reached), key=lambda case: case.seconds)
+    seconds, tried, most = 0.0, 0, 1.0
+    while tried < len(cases) and seconds < LONGEST:
+        batch = {}    # of one test each, as many as take twice as long as those before, and fit into a command
+        once, end = 0.0, tried + 300
+        while tried < min(end, len(cases)) and (not batch or once + cases[tried].seconds < most):
+            batch.setdefault(cases[tried].test, []).append(cases[tried])
+            once += cases[tried].seconds
+            tried += 1
+        seconds, most = seconds + once, 2.0 * most
+        for test, some in batch.items():
+            def run(number):
+                with tempfile.TemporaryDirectory(dir=folder) as own:
+                    return run_command(tests[test], words_of_cases(tests[test], test, [case.name for case in some]), own,
+                                       30 + 10 * sum(case.seconds for case in some), MPM_MUTANT=str(number))[0]
+
+            status = run(mutant.number)
+            # it must be the mutant, and not the order of cases, or the machine
+            if status != 0 and run(0) == 0 and run(mutant.number) != 0:
+                return KILLED, test + ("" if status else " (time)"), time.time() - start
+    return SURVIVED, "tried %d of %d cases that reach it" % (tried, len(cases)), time.time() - start
+
+
+def run_random(options):
+    os.environ["MPM_QUICK"] = "1"    # as in tools/test.sh
+    tree = os.path.abspath(options.tree or os.path.join(BUILD, "random"))
+    mutants, drawn = build_random(tree, options)
+    print("%d mutants of %d places are choices in one program" % (len(mutants), drawn), flush=True)
+    build = os.path.join(tree, "build", "quick")
+    tests = tests_of(build)
+    folder = os.path.join(build, "mutants")
+    os.makedirs(folder, exist_ok=True)
+    wanted = []
+    for name, test in tests.items():
+        labels = set(property_of(test, "LABELS"))
+        if "long" not in labels and not labels & NOT_OF_THE_PROGRAM and not ("docs" in labels and "examples" not in labels):
+            wanted.append(name)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        cases = sum(pool.map(lambda test: cases_of(tests, test, folder, options.no_build), wanted), [])
+        print("%d cases pass without mutants, in %.0f s" % (len(cases), sum(case.seconds for case in cases)), flush=True)
+        mutants = chosen(mutants, options.patterns)
+        return report(mutants, pool.map(lambda mutant: try_random(tests, mutant, cases, folder), mutants))
 
 
 if __name__ == "__main__":

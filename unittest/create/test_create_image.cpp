@@ -636,9 +636,10 @@ PARAMETER_TEST(
 TEST(Mistakes, AcrossItself)
 {
   const ScratchFile file("L.pgm", pgm(L));
-  expect_error(plane("si", "p p", "0 1 0 1") + "create_points 1 image " + file.name +
-                   " pixel 0.2 sites pixels\n",
-               "longer than the periodic box");
+  for (const auto &[range, origin] : {std::pair("0 1 0 1", "0 0"), std::pair("4 5 -3 -2", "4 -3")})
+    expect_error(plane("si", "p p", range) + "create_points 1 image " + file.name +
+                     " pixel 0.2 sites pixels origin " + origin + "\n",
+                 "is 1.2 long along y, longer than the periodic box");
 }
 
 TEST(Mistakes, Overlap)

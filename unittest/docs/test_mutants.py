@@ -13,6 +13,9 @@ import tempfile
 
 import mpm_testing as mt
 
+sys.path.insert(0, os.path.join(mt.ROOT, "tools"))
+import mutants_random
+
 MUTATE = [sys.executable, os.path.join(mt.ROOT, "tools", "mutate.py"), "--check"]
 
 
@@ -49,6 +52,75 @@ def test_what_does_not_fit_is_told():
                 file.write(good.replace(old, new) if old else good)
             result = mt.run(MUTATE + ["--list", path])
             assert said in result.output and (result.code != 0) == bool(old), result.output
+
+
+# random mistakes in this
+PROGRAM = """// prints some numbers
+#include <cstdio>
+#include <vector>
+static constexpr double HALF = 0.5;
+struct Pair {
+  static constexpr double TENTH = 0.1;
+  double x[3] = {1.0, 2.0, 4.0};
+};
+static double power(const Pair &p, int n)
+{
+  if (n > 3)
+    return p.x[0] + HALF * n;
+  return n <= 2 ? p.x[2] - Pair::TENTH : 1.5;
+}
+int main()
+{
+  Pair p;
+  std::vector<double> all(3 + 4, 7.0);
+  double sum = 0.25;
+  for (int i = 0; i < 5; i++) {
+    p.x[0] += i * sum;
+    sum -= power(p, i);
+    all[i + 1] = i > 2 && sum < 1.0e3 ? p.x[1] : p.x[0] - sum;
+  }
+  for (const double x : all) printf("%.9g ", x);
+  printf("%.9g", sum);
+}
+"""
+
+
+def test_random_mistakes_are_made_while_the_program_runs():
+    """a program with all of them does what one does that has one of them in its text"""
+    with tempfile.TemporaryDirectory() as folder:
+        def build(name, sources):
+            mt.ok(mt.run(["c++", "-std=c++17", "-w", "-I", os.path.join(folder, "all")] + sources + ["-o", os.path.join(folder, name)]))
+
+        def prints(name, number=0):
+            return mt.run(["env", "MPM_MUTANT=%d" % number, os.path.join(folder, name)]).output
+
+        def write(path, text):
+            path = os.path.join(folder, path)
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, "w", encoding="ascii") as file:
+                file.write(text)
+            return path
+
+        write("src/room/program.cpp", PROGRAM)
+        build("plain", [write("plain.cpp", PROGRAM)])
+        write("all/math/mpm_mutant.h", mutants_random.HEADER)
+        helper = write("all/mpm_mutant.cpp", mutants_random.SOURCE % {"size": 1000})
+        tried, seen = 0, 0
+        for seed in range(2):
+            mutants = list(mutants_random.draw(os.path.join(folder, "src"), seed))
+            assert len(mutants) == 12 and all(mutant.edits for mutant in mutants), [mutant.told for mutant in mutants]
+            edits = [edit for mutant in mutants for edit in mutant.edits]
+            build("choices", [write("choices.cpp", mutants_random.with_choices(PROGRAM, edits)), helper])
+            assert prints("choices") == prints("plain")
+            for mutant in mutants:
+                line, text = re.match(r"room/program.cpp:(\d+) [^:]+: (.*)", mutant.told).groups()
+                lines = PROGRAM.splitlines(True)
+                lines[int(line) - 1] = text + "\n"
+                build("one", [write("one.cpp", "".join(lines))])
+                assert prints("choices", mutant.number) == prints("one"), mutant.told
+                tried += 1
+                seen += prints("one") != prints("plain")
+        assert seen > 0.7 * tried, (seen, tried)
 
 
 mt.main(globals())

@@ -678,6 +678,31 @@ SERIAL_TEST(Airbag, VentAndInflow)
   EXPECT_NEAR(wide.fix("b")->compute_vector(3) / held, 1.0, 1e-3);
 }
 
+// mass and vents in all units: p V = m R T, and one unit of the time of the closed form
+SERIAL_PARAMETER_TEST(AirbagUnits, EmptyAlike, const char *,
+                      Values("si", "cgs", "metal", "real", "lj"))
+{
+  const ScratchFile file("ball.msh", sphere(2, 0.5));
+  constexpr double P = 3.0, T = 300.0, R = 0.02, AREA = 1e-3, GAMMA = 1.4;
+  Scene run(replaced(box(3, -1.0, 1.0, 0.2, ""), "units si", strprintf("units %s", GetParam())) +
+            thin_body(file.name, "thickness 1e9", "neohookean 1e-3 0.3") +
+            strprintf("fix b all mpm/airbag e gas %g %g temperature %g %g vent %g 0.8\nrun 0\n", P,
+                      GAMMA, T, R, AREA));
+  const auto *force = run.lmp->force;
+  const auto entry = [&](int k) {
+    return run.fix("b")->compute_vector(k);
+  };
+  const double V = entry(1), mass = entry(3), energy = P * V / force->nktv2p;
+  EXPECT_NEAR(measured("mass over that of the gas", mass / (energy / (R * T))), 1.0, 1e-9);
+  EXPECT_NEAR(entry(7) / (energy / (GAMMA - 1.0)), 1.0, 1e-9);
+  const double sound = sqrt(GAMMA * R * T / force->mvv2e);
+  run.commands(strprintf("timestep %.15g\nrun 1000\n", V / (0.8 * 0.578704 * AREA * sound) / 1000));
+  EXPECT_NEAR(measured("pressure", entry(0) / P) / 0.279082, 1.0, 0.005);
+  EXPECT_NEAR(entry(4) / T / 0.694444, 1.0, 0.005);
+  EXPECT_NEAR(entry(3) / mass / 0.401878, 1.0, 0.005);
+  EXPECT_NEAR((entry(3) + entry(6)) / mass, 1.0, 1e-12);
+}
+
 // the summary of a run has the time step over the limit of elements, not of the lattice
 SERIAL_TEST(Airbag, SummaryTellsTheLimit)
 {

@@ -81,6 +81,30 @@ SERIAL_TEST(Units, IsReleased)
   }
 }
 
+// a spin is shared with water at rest by the moments of inertia, that of the body and the added one,
+// which does not depend on its density; near that of an ellipse, pi rho (a^2 - b^2)^2/8
+SERIAL_TEST(Body, SharesItsSpin)
+{
+  constexpr double a = 0.2, b = 0.05;
+  double first = 0.0;
+  for (const double density : {1e5, 1000.0, 10.0}) {
+    Scene run(
+        plane("si", "f f", "0 1 0 1", 1, 0.02) +
+        "region hull block 0.303 0.703 0.461 0.561 INF INF\n"
+        "region fluid block 0.303 0.703 0.461 0.561 INF INF side out\n"
+        "create_points 1 region fluid spacing 0.0125\n" +
+        strprintf("fix body all mpm/rigid hull density %g slip omega 0 0 1 hold x y\n", density) +
+        "fix w all mpm/incompressible 0.025 1000 spread 0 tolerance 1e-10 region hull\n"
+        "timestep 1e-5\nrun 1\n");
+    const double inertia = density * 4.0 * a * b * 4.0 * (a * a + b * b) / 12.0,
+                 added = measured("added moment of inertia",
+                                  inertia * (1.0 / body(run, OMEGA + 2) - 1.0));
+    if (first == 0.0) first = added;
+    EXPECT_NEAR(added / first, 1.0, 1e-4) << density;
+    EXPECT_NEAR(added / (PI * 1000.0 * std::pow(a * a - b * b, 2) / 8.0), 1.0, 0.5);
+  }
+}
+
 // what is pushed goes on, whatever the number of steps; apic took 15 and 38 % here
 SERIAL_TEST(Body, GoesOn)
 {

@@ -315,6 +315,33 @@ SERIAL_TEST(Pocket, TakesAirFromOutside)
   EXPECT_NEAR(measured("volume of the air with the pressure outside", at_first), 0.19, 0.035);
 }
 
+// water is shot out of a tube between two rooms with gas of different pressures: the pocket that
+// they become has the gas of both, p V^gamma of which is what it was
+SERIAL_TEST(Pocket, OfSeveralHasTheirGas)
+{
+  for (const double gamma : {1.0, 1.4}) {
+    Scene run(plane("lj", "f f", "0 1 0 0.4", 1, 0.02) +
+              "region l block 0.3 0.6 INF 0.1 INF INF\nregion u block 0.3 0.6 0.3 INF INF INF\n"
+              "region walls union 2 l u\nregion w block 0.4 0.5 0.1 0.3 INF INF\n"
+              "create_points 1 region w spacing 0.025\nvelocity all set 1 0 0\n" +
+              strprintf("fix w all mpm/incompressible 0.05 1 gas 0.3 %g region walls\n", gamma) +
+              "timestep 0.005\nrun 1\n");
+    const double before = gas(run, VOLUME);
+    EXPECT_EQ(gas(run, COUNT), 2.0);
+    double ratio = 1.0;
+    for (int k = 0; k < 100 && gas(run, COUNT) == 2.0; k++) {
+      ratio = gas(run, HIGHEST) / gas(run, LOWEST);
+      run.commands("run 1\n");
+    }
+    EXPECT_GT(measured("ratio of pressures", ratio), 1.3);
+    EXPECT_EQ(gas(run, COUNT), 1.0);
+    EXPECT_NEAR(
+        measured("gas over that before",
+                 gas(run, VOLUME) * std::pow(gas(run, HIGHEST) / 0.3, 1.0 / gamma) / before),
+        1.0, 1e-9);
+  }
+}
+
 // on four ranks, balanced; and the same to the last bit from a restart file
 TEST(Gas, RanksAndRestart)
 {

@@ -969,6 +969,19 @@ TEST(Tank, FirstTimeStep)
   }
 }
 
+// what falls goes no farther than a share of a cell in a step, by its speed and its acceleration
+TEST(Block, StepOfAFall)
+{
+  constexpr double G = 0.25, SHARE = 0.7;
+  Scene run(plane("si", "f f", "0 8 0 20", 1, 0.3) +
+            "region w block 2 6 14 18 INF INF\ncreate_points 1 region w spacing 0.5\n" +
+            strprintf("fix w all mpm/incompressible 1 2.0\nfix dt all mpm/dt %g every 1 max 100\n"
+                      "fix g all gravity %g vector 0 -1 0\nrun 5\n",
+                      SHARE, G));
+  const double v = -run.sums().p[1] / run.sums().mass;
+  EXPECT_NEAR(run.lmp->update->dt / (2.0 * SHARE / (v + std::sqrt(v * v + 4.0 * G))), 1.0, 1e-9);
+}
+
 // a column that collapses, hits a wall, and splashes: pressures of all points are those of water,
 // also next to cells that are wet as others surround them, less than half full
 SERIAL_TEST(Splash, PressuresOfPoints)

@@ -314,6 +314,41 @@ SERIAL_PARAMETER_TEST(Wall, IsInsulator, const char *,
   EXPECT_NEAR(some[17] / -some[6], 0.25, 1e-12);
 }
 
+// only the motion relative to the wall counts: a block that slides on a wall at rest, a wall that slides under a
+// block at rest, and both by halves make the same heat, that of the law of Coulomb
+SERIAL_PARAMETER_TEST(WallThatMoves, HeatsAlike, const char *,
+                      Values("ylo separate", "ylo slip", "region below separate"))
+{
+  const bool is_face = GetParam()[0] == 'y';
+  constexpr double WEIGHT = 2.0, RELATIVE = 3.0, FRICTION = 0.25;
+  double heat = 0.0;
+  for (const double block : {RELATIVE, 0.0, 0.5 * RELATIVE}) {
+    Scene run(plane("lj", "p f", is_face ? "0 2 0 4" : "0 2 -1 4", 1, 0.1) +
+              body("block INF INF 0 2 INF INF",
+                   "density 1 neohookean 5000 0.3 thermal conducting 1 0 0.1", "0.25") +
+              "region below block INF INF INF 0 INF INF\n" +
+              strprintf("fix w all mpm/boundary %s friction %g heat yes velocity %g 0 0\n",
+                        GetParam(), FRICTION, block - RELATIVE) +
+              strprintf("fix heat all mpm/heat\ncompute e all mpm/energy\n"
+                        "fix g all gravity %g vector 0 -1 0\nvelocity all set %g 0 0\n"
+                        "timestep 0.001\n",
+                        WEIGHT, block));
+    run.commands("run 1000\n");
+    const double m = run.sums().mass, end = run.sums().p[0] / m - (block - RELATIVE);
+    const double *const e = run.compute_vector();
+    const auto what = strprintf("block at %g: ", block);
+    EXPECT_NEAR(measured(what + "velocity along the wall at the end", end),
+                RELATIVE - FRICTION * WEIGHT, 0.01);
+    EXPECT_NEAR(measured(what + "heat over energy of the relative motion",
+                         e[17] / (0.5 * m * (RELATIVE * RELATIVE - end * end))),
+                1.0, 0.005);
+    if (heat > 0.0) EXPECT_NEAR(e[17] / heat, 1.0, 1e-9);
+    heat = e[17];
+    EXPECT_NEAR(e[14] / e[17], 1.0, 1e-11);    // what points have got
+    EXPECT_NEAR(e[10] / e[17], 0.0, 1e-10);    // residual
+  }
+}
+
 // A block hits a wall at an angle: what it loses of its motion along the wall is heat, what nodes
 // lose as they meet the wall is none. Friction at its lower face also turns and shears the block,
 // which takes 3.6 to 3.8 % of that with 4, 8, and 16 cells in its height and steps of half the

@@ -178,6 +178,20 @@ SERIAL_TEST(HalfSpaces, Faces)
     }
 }
 
+// so in steps in which the exchange is faster than the limit that the step has for it, by little or by much
+SERIAL_TEST(HalfSpaces, FacesAtTheLimitOfSteps)
+{
+  constexpr int n = 40;
+  for (double step = 0.02; step < 0.6; step *= 1.3) {
+    Scene run(Bars{n, 0.25, strprintf("%.17g", 2.0 * std::sqrt(10.0)), 1.0}.text());
+    const double before = total_heat(run);
+    run_to(run, 0.01, step / (n * n));
+    EXPECT_NEAR(face(run, "ma", 1.0 / n), 0.628014, 0.0015) << step;
+    EXPECT_NEAR(face(run, "mb", 1.0 / n), 0.185993, 0.001) << step;
+    EXPECT_NEAR(total_heat(run) / before, 1.0, 1e-13);
+  }
+}
+
 // perfect contact: 1/3 at once, and errors that go away with the spacing
 SERIAL_TEST(Perfect, IsTheLimit)
 {

@@ -604,6 +604,32 @@ TEST(Viscosity, ArtificialOnlyInCompression)
   }
 }
 
+// laws that begin with a state have it in their own rows, whatever laws are before them
+TEST(Start, LawsBehindOthersHaveTheirState)
+{
+  for (const double T : {500.0, 300.0}) {
+    Point p(joined("density 1000 eos linear 1e9 strength j2 1e9 1e6 hardening linear 1e6 damage "
+                   "rankine 1e6 weibull 5 1 7 thermal adiabatic 1000 ",
+                   T, " 0.9 melt 400 10"));
+    EXPECT_EQ(value(p, "molten"), T > 400.0 ? 1.0 : 0.0);
+    EXPECT_EQ(value(p, "temperature"), T);
+    EXPECT_GT(value(p, "random"), 0.0);
+    EXPECT_LT(value(p, "random"), 1.0);
+    EXPECT_EQ(value(p, "eplastic"), 0.0);
+  }
+}
+
+// with the share xi of damping central differences are stable in steps of sqrt(1 + xi^2) - xi of those without
+// (Belytschko, Liu, Moran, Nonlinear Finite Elements, 6.6)
+TEST(Viscosity, ArtificialShortensTheStep)
+{
+  Point plain("density 1000 eos linear 1e9", 1, 0.01);
+  for (const double xi : {0.06, 0.5, 2.0}) {
+    Point p(joined("density 1000 eos linear 1e9 viscosity artificial 1.5 ", xi), 1, 0.01);
+    EXPECT_NEAR(plain.wave_speed() / p.wave_speed(), std::sqrt(1.0 + xi * xi) - xi, 1e-12);
+  }
+}
+
 TEST(Viscosity, NeverGivesEnergy)
 {
   RandomMatrix random(4);

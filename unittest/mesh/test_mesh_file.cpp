@@ -116,7 +116,7 @@ TEST(MeshFile, TypesAndGroups)
   EXPECT_EQ(points[0].type, 1.0);
   EXPECT_EQ(points[1].type, 2.0);
   expect_error(space_2 + make(file.name, "mesh", "types physical"), "would have two types");
-  expect_error(space_2 + make(two.name, "elements", "types physical"), "in the sets");
+  expect_error(space_2 + make(two.name, "elements", "types physical"), "in the sets core and All");
 }
 
 // parts of Abaqus are where instances put them; sets of parts: of all, of the assembly: of one
@@ -296,7 +296,8 @@ run 0
                                                {"data w velocity", "must be 0 in a 2d simulation"},
                                                {"data ep mass factor ep -1", "must be positive"},
                                                {"data w d2_w factor ep 2", "no keyword data takes"},
-                                               {"data tensor F factor tensor -1", "determinant"}})
+                                               {"data tensor F factor tensor -1", "determinant"},
+                                               {"data tensor F factor tensor 0", "determinant"}})
     expect_error(scene + "create_points 1 elements " + file.name + " " + m.lines, m.message);
   const ScratchFile nan("nan.vtk", replaced(cells, "0.125 0.5", "nan 0.5"));
   expect_error(scene + "create_points 1 elements " + nan.name + " data ep eplastic", "finite");

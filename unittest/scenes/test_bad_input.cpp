@@ -34,6 +34,21 @@ static std::string before_run(const std::string &lines, const std::string &run =
   return changed(good_scene, "run 10\n", lines + "\n" + run);
 }
 
+// the word that is wrong is marked in the line of the input
+TEST(Message, MarksTheWord)
+{
+  for (const std::string wrong : {"-1.5", "sliip", "NULL"}) {
+    const std::string line = "fix w all mpm/boundary zlo slip friction " + wrong + " heat no";
+    Scene run;
+    std::istringstream lines(run.error(before_run(line)));
+    std::string shown, marks;
+    while (std::getline(lines, marks) && marks.find('^') == std::string::npos) shown = marks;
+    ASSERT_NE(marks.find('^'), std::string::npos) << wrong;
+    EXPECT_EQ(marks.find('^'), shown.find(wrong)) << shown << "\n" << marks;
+    EXPECT_EQ(std::count(marks.begin(), marks.end(), '^'), (int) wrong.size());
+  }
+}
+
 class BadInput : public ::testing::TestWithParam<Change> {};
 
 TEST_P(BadInput, IsExplained)

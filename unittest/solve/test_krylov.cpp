@@ -369,9 +369,9 @@ VectorXd recursion(const std::deque<Pair> &pairs, const MatrixXd &H0, VectorXd f
 // more pairs than there is room for, parts of corrections, several sequences with other forces
 TEST(QuasiNewton, IsTheRecursion)
 {
+  QuasiNewton method;    // the same for systems that grow
   for (const int n : {3, 37, 64}) {
     const MatrixXd A = matrix(n, 4.0, 1), H0 = matrix(n, 1.5, 2).inverse();
-    QuasiNewton method;
     for (int again = 0; again < 2; again++) {    // start() forgets
       method.start(n);
       std::deque<Pair> pairs;

@@ -353,8 +353,8 @@ void LAMMPS_NS::put_in_order(LAMMPS *lmp, std::vector<int> &key, int nkeys)
   std::vector<int> permute(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
   for (int i = 0; i < nlocal; i++) permute[next[key[i]]++] = i;
   const tagint *tag = atom->tag;
-  for (int k = 0; k < all_keys; k++)
-    if (k != nkeys && k != others + nkeys && start_of_key[k + 1] - start_of_key[k] > 1)
+  for (int k = 0; k < all_keys - 1; k++)    // of the last key, and of nkeys, are no points
+    if (k != nkeys && start_of_key[k + 1] - start_of_key[k] > 1)
       std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
                 [tag](int i, int j) {
                   return tag[i] < tag[j];

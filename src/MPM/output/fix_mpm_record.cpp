@@ -55,7 +55,7 @@ FixMPMRecord::FixMPMRecord(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
   MPI_Bcast(&ncolumn, 1, MPI_INT, 0, world);
   broadcast(rows, world);
 
-  const std::size_t n = rows.size() / (1 + ncolumn);
+  const std::size_t n = nrow();
   integrals.assign(n * ncolumn, 0.0);
   for (std::size_t k = 1; k < n; k++)
     for (int c = 0; c < ncolumn; c++)
@@ -121,7 +121,7 @@ double FixMPMRecord::compute_vector(int k)
   double t = update->atime + (update->ntimestep - update->atimestep) * update->dt - start;
   const bool integral = k >= ncolumn;
   const int c = k % ncolumn;
-  const std::size_t n = rows.size() / (1 + ncolumn);
+  const std::size_t n = nrow();
   for (const double end : {at(0, 0), at(n - 1, 0)})
     if (std::fabs(t - end) <= ROUND_OFF * std::max(at(n - 1, 0) - at(0, 0), std::fabs(start)))
       t = end;

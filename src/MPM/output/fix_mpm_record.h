@@ -45,6 +45,7 @@ class FixMPMRecord : public Fix, private MPMRecordOptions {
   std::vector<double> integrals;    // integrals of the values up to each row
   int ncolumn;                      // number of columns of values
 
+  std::size_t nrow() const { return rows.size() / (1 + ncolumn); }
   double at(std::size_t row, int column) const { return rows[row * (1 + ncolumn) + column]; }
   void read(const std::string &file);
 };
