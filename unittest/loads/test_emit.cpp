@@ -645,6 +645,26 @@ run 20000
   EXPECT_GT(speed, 0.95);
 }
 
+// a drain at an edge of a periodic box is as large as in the middle
+SERIAL_TEST(Drain, AcrossPeriodicFaces)
+{
+  for (const double x : {6.0, 0.3, 12.0})
+    for (const double y : {5.0, 0.0}) {
+      int inside = 0;
+      for (int i = 0; i < 24; i++)
+        for (int j = 0; j < 20; j++) {
+          const double dx = std::remainder(0.5 * i + 0.25 - x, 12.0),
+                       dy = std::remainder(0.5 * j + 0.25 - y, 10.0);
+          inside += dx * dx + dy * dy < 2.2 * 2.2;
+        }
+      Scene run(plane("lj", "p p", "0 12 0 10", 1, 0.5) +
+                body("box", "density 1.0 linear 100.0 0.3") +
+                strprintf("region drain cylinder z %g %g 2.2 INF INF\n", x, y) +
+                "fix out all mpm/absorb region drain\ntimestep 0.005\nrun 2\n");
+      EXPECT_EQ(run.lmp->atom->natoms, 480 - inside) << x << " " << y;
+    }
+}
+
 // mistakes are told, with the remedy
 TEST(BadInput, IsRefused)
 {

@@ -93,13 +93,16 @@ struct Parts {
         (is_field ? "create_points 1 region r1 ppc 2 fix grid1\n"
                   : "create_points 1 region r1 spacing 0.5\n") +
         fill + groups;
+    const bool is_flow = motion.find("incompressible") != std::string::npos;    // without laws
     for (const auto &[type, field] : bodies)
-      text += strprintf("fix law%d body%d mpm/material density %g ", type, type,
-                        type == 1 && bodies.count(3) ? 1.5 : 1.0) +
-          (type == 3                    ? "eos tait 100.0 7"
-               : type == 6 || type == 7 ? "linear 100.0 0.3"
-                                        : law) +
-          (type == 3 ? "" : more_law) + "\n";
+      text += is_flow && field == "grid1"
+          ? ""
+          : strprintf("fix law%d body%d mpm/material density %g ", type, type,
+                      type == 1 && bodies.count(3) ? 1.5 : 1.0) +
+              (type == 3                    ? "eos tait 100.0 7"
+                   : type == 6 || type == 7 ? "linear 100.0 0.3"
+                                            : law) +
+              (type == 3 ? "" : more_law) + "\n";
     text += "velocity main ramp vx 0.0 0.4 y 0 3 units box\nvelocity main ramp vy 0.0 -0.3 y 0 3 "
             "units box\n";
     for (const auto &[type, field] : bodies)

@@ -119,6 +119,21 @@ SERIAL_TEST(Doubts, RegionsAcrossPeriodicFaces)
                           "region w union 2 one two"),
                  words),
             0);
+  // one that moves there, in the second run, and its image
+  const std::string moves = " INF INF move v_u NULL NULL units box\n",
+                    go = "variable u equal 0.1*(step>10)\n";
+  const auto moving =
+      go + "region w block 0.8 0.95 0.5 0.8" + moves + "fix w all mpm/boundary region w slip\n";
+  EXPECT_EQ(told(scene + moving, words), 0);
+  EXPECT_EQ(told(scene + moving + "run 20\n", words), 1);
+  EXPECT_EQ(told(scene + moving + "region v block -0.2 -0.05 0.5 0.8" + moves +
+                     "fix v all mpm/boundary region v slip\nrun 20\n",
+                 words),
+            0);
+  // inlets and outlets go on there
+  const auto flows = scene + "region r block 0.9 1.1 0.6 0.8 INF INF\n";
+  EXPECT_EQ(told(flows + "fix in all mpm/emit 1 region r velocity 0 1 0\n", words), 0);
+  EXPECT_EQ(told(flows + "fix out all mpm/absorb region r\n", words), 0);
 }
 
 // columns and computes of LAMMPS that see a part of points only
@@ -231,4 +246,73 @@ SERIAL_TEST(Doubts, InletsOfNewTypes)
     EXPECT_EQ(run.error("run 30\n"), "");
     EXPECT_GT(run.lmp->atom->natoms, before + 8) << type;
   }
+}
+
+// commands between runs that strain bodies without their points knowing, and those that do not
+SERIAL_TEST(Doubts, PointsMovedBetweenRuns)
+{
+  const auto scene = START + GRID + "region c block 0.4 0.6 0.6 0.8 INF INF\n" +
+      "create_points 2 region c ppc 2\ngroup upper type 2\ngroup lower type 1\n" + CONDUCTS +
+      "fix g all gravity 1 vector 0 -1 0\n" + STEP + "thermo 1000\nrun 2\n";
+  const std::string words = "points relative to each other since the last run";
+  const auto moved = [&](const std::string &command) {
+    return told(scene + command, words);
+  };
+  EXPECT_EQ(moved("displace_atoms all ramp x 0 0.01 y 0 0.4 units box\n"), 1);
+  EXPECT_EQ(moved("displace_atoms all ramp x 0 0.01 x 0.2 0.8 units box\n"), 1);
+  EXPECT_EQ(moved("displace_atoms upper random 0.001 0.001 0 4711 units box\n"), 1);
+  EXPECT_EQ(moved("change_box all y final 0 0.99 remap units box\n"), 1);
+  // bodies as a whole, and points that come, go, or change their group
+  EXPECT_EQ(moved(""), 0);
+  EXPECT_EQ(moved("displace_atoms upper move 0.01 0.05 0 units box\n"), 0);
+  EXPECT_EQ(moved("displace_atoms upper rotate 0.5 0.7 0 0 0 1 30 units box\n"), 0);
+  EXPECT_EQ(moved("change_box all y final 0 1.1 units box\n"), 0);
+  EXPECT_EQ(moved("delete_atoms group upper\n"), 0);
+  EXPECT_EQ(moved("region d block 0.1 0.2 0.8 0.9 INF INF\ncreate_points 2 region d ppc 2\n"), 0);
+  EXPECT_EQ(moved("group left region b\ndisplace_atoms left move 0 0.01 0 units box\n"), 0);
+  EXPECT_EQ(moved("velocity upper set 0 -1 0\nrun 2 post no\nrun 2 pre no\n"), 0);
+  // before the first run, and across a periodic face
+  EXPECT_EQ(told(START + GRID + CONDUCTS + STEP +
+                     "displace_atoms all random 0.001 0.001 0 4711 units box\n",
+                 words),
+            0);
+  EXPECT_EQ(told(replaced(scene, "boundary f f p", "boundary p f p") +
+                     "displace_atoms all move 0.7 0 0 units box\n",
+                 words),
+            0);
+}
+
+// fluid is one of the flow, whatever law there is for it; solids in it have theirs
+SERIAL_TEST(Doubts, LawsOfFluid)
+{
+  const auto scene = START + "create_points 1 region b spacing 0.025\n" +
+      "region c block 0.4 0.6 0.1 0.3 INF INF\ngroup solid region c\n"
+      "group fluid subtract all solid\nfix g all gravity 9.81 vector 0 -1 0\n" +
+      replaced(STEP, "0.5", "0.5 max 0.001");
+  const std::string flow = "fix w all mpm/incompressible 0.05 1000 viscosity 10 solid solid\n",
+                    words = "does not act on ";
+  const auto law = [](const std::string &group) {
+    return "fix m " + group + " mpm/material density 1000 neohookean 1e3 0.3\n";
+  };
+  EXPECT_EQ(told(scene + law("solid") + flow, words), 0);
+  EXPECT_EQ(told(scene + law("all") + flow, words), 1);
+  const auto fluid = scene + replaced(flow, " solid solid", "");
+  EXPECT_EQ(told(fluid, words), 0);
+  EXPECT_EQ(told(fluid + law("all"), words), 1);
+}
+
+// grains in the group of a flow are moved by their fix only, which LAMMPS does not know
+SERIAL_TEST(Doubts, GroupsOfIntegrators)
+{
+  const std::string words = "time integrated more than once";
+  const auto scene = replaced(START, "atom_style mpm", "atom_style hybrid sphere mpm") +
+      "create_points 1 region b spacing 0.025\ncreate_atoms 2 single 0.5 0.2 0\n"
+      "set type 2 diameter 0.01 density 2000\ngroup grains type 2\n"
+      "fix w all mpm/incompressible 0.05 1000\nfix g all gravity 9.81 vector 0 -1 0\n"
+      "fix nve grains nve/sphere disc\nfix i grains mpm/immersed w 1000 0.001 gravity 0 -9.81 0\n" +
+      replaced(STEP, "0.5", "0.5 max 0.001");
+  EXPECT_EQ(told(scene, words), 0);
+  EXPECT_EQ(told(scene + "fix twice grains nve\n", words), 2);
+  expect_error(replaced(scene, "nve grains", "nve all") + "run 1\n",
+               "give the fixes disjoint groups");
 }

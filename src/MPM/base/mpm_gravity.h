@@ -15,6 +15,7 @@
 #include "modify.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,17 @@ namespace LAMMPS_NS {
 class MPMGravity {
  public:
   MPMGravity() = default;
+  /** Of all groups. Stops with an error where one has no direction, as LAMMPS sees it. */
+  explicit MPMGravity(LAMMPS *lmp) : fixes(lmp->modify->get_fix_by_style("^gravity"))
+  {
+    double g[3];
+    find(g);
+    if (!std::isfinite(g[0] + g[1] + g[2]))
+      lmp->error->all(
+          FLERR, Error::NOLASTLINE,
+          "Fix gravity has no direction: use a vector that is not zero, in 2d one along "
+          "x or y");
+  }
   /** user: named in the error if a fix gravity has a group other than all. */
   MPMGravity(LAMMPS *lmp, const std::string &user) :
       fixes(lmp->modify->get_fix_by_style("^gravity"))

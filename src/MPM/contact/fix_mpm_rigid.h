@@ -17,6 +17,7 @@ FixStyle(mpm/rigid,FixMPMRigid);
 
 #include "base/mpm_step_limit.h"
 #include "contact/mpm_rigid_contact.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
 #include "math_extra.h"
@@ -39,6 +40,7 @@ class FixMPMRigid :
     public MPMNodeAction,
     public MPMRubbing,
     public MPMStepLimit,
+    public MPMRegionImages,
     private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
@@ -66,6 +68,7 @@ class FixMPMRigid :
   // for flows
   /** Is the shape of the body the region with this ID? */
   bool has_region(const std::string &id) const { return id == region_id; }
+  bool sees_images(const std::string &name) const override { return name == region_id; }
   /** Center [3], velocity [3], and angular velocity [3]. */
   void motion(double *center, double *velocity, double *angular) const;
   /** Maps a place x of the body to its place in the region, which stays at rest. */

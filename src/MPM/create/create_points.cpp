@@ -10,6 +10,7 @@
 
 #include "atom.h"
 #include "atom_vec.h"
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_input.h"
 #include "base/mpm_options.h"
 #include "comm.h"
@@ -19,10 +20,12 @@
 #include "error.h"
 #include "field/mpm_field.h"
 #include "field/mpm_frame.h"
+#include "field/mpm_interfaces.h"
 #include "fix.h"
 #include "group.h"
 #include "image/body.h"
 #include "irregular.h"
+#include "lattice.h"
 #include "modify.h"
 #include "region.h"
 #include "walls/mpm_region_cut.h"
@@ -40,7 +43,25 @@ static constexpr bigint PART = 64;          // ... 1/PART of those it has looked
 static constexpr bigint GROWTH = 16;        // room for points grows by 1/GROWTH at least
 
 CreatePoints::CreatePoints(LAMMPS *lmp) : Command(lmp) {}
+
 CreatePoints::~CreatePoints() = default;
+
+/** Lengths of regions are in units of the lattice command, if there is one. */
+void CreatePoints::check_units_of_region() const
+{
+  const Region &r = *region;
+  if (!fix || !r.scaleflag || !r.bboxflag || !domain->lattice || domain->lattice->xlattice == 1.0)
+    return;
+  const double size[3] = {r.extent_xhi - r.extent_xlo, r.extent_yhi - r.extent_ylo,
+                          r.extent_zhi - r.extent_zlo};
+  const double largest = *std::max_element(size, size + domain->dimension);
+  if (largest < fix->lattice.h && comm->me == 0)
+    error->warning(
+        FLERR,
+        "Create_points: region {} is only {:.4g} wide, less than a cell of fix mpm {}, as "
+        "its lengths are in units of the lattice command: give it the keyword units box",
+        r.id, largest, fix->id());
+}
 
 void CreatePoints::command(int narg, char **arg)
 {
@@ -106,6 +127,7 @@ void CreatePoints::command(int narg, char **arg)
   MPI_Allreduce(&nblocal, &atom->natoms, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (atom->natoms < 0 || atom->natoms >= MAXBIGINT)
     error->all(FLERR, Error::NOLASTLINE, "Too many total atoms");
+  if (region) check_units_of_region();
   if (npoints == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Create_points made no points: no site of the lattice with spacing {:.8g} is inside "
@@ -289,6 +311,12 @@ void CreatePoints::place_sites(const Options &options)
       if (!use_spacing) spacing[d] = fix->lattice.h / ppc[d];
     }
   } else {
+    const auto flows = find_fixes<MPMFluid>(lmp);
+    if (!use_spacing && !flows.empty())
+      error->all(FLERR, Error::NOPOINTER,
+                 "Create_points ppc refers to the lattice of a fix mpm, and not to that of a flow: "
+                 "use create_points spacing {:.8g}",
+                 0.5 * flows[0]->spacing());
     if (!use_spacing)
       error->all(FLERR, Error::NOPOINTER,
                  "Create_points ppc refers to the lattice of a fix mpm, "

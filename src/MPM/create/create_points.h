@@ -133,6 +133,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   void check_overlap();
   bool is_inside(const double *x) const;
   bigint ranges_in_box(Range *) const;
+  void check_units_of_region() const;
   bigint make_points();
   bigint make_mesh_points();
   bigint make_table_points();

@@ -372,7 +372,7 @@ void CreatePoints::check_overlap()
                all_apart ? "; of a soil and the water in its pores make the soil first, and the "
                            "water with keyword share"
                          : "");
-  if (comm->me == 0) error->warning(FLERR, "Create_points makes overlapping bodies: {}", message);
+  if (comm->me == 0) utils::logmesg(lmp, "Create_points makes overlapping bodies: {}\n", message);
 }
 
 /** Position of the point of a site: the site's, displaced by jitter, inside the box. The random

@@ -10,20 +10,23 @@
 
 #include "atom.h"
 #include "base/mpm_find_fixes.h"
+#include "base/mpm_gravity.h"
+#include "base/mpm_region_image.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "field/mpm_interfaces.h"
 #include "force.h"
 #include "material/material.h"
 #include "material/material_point.h"
 #include "material/softening.h"
+#include "math_extra.h"
 #include "region.h"
 #include "update.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -32,7 +35,6 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-static constexpr double INFINITE = 1.0e19;    // LAMMPS has 1e20 for INF in regions
 static constexpr double INF = std::numeric_limits<double>::infinity();
 
 /** Ratios from low to high are doubtful; text: what follows from them, and the remedy. */
@@ -66,7 +68,10 @@ static const Doubt table[] = {
      "temperature in the same units"},
     {1.0, INF,
      "material that gets as warm has no strength: is this meant, and in the units of the melting "
-     "temperature?"}};
+     "temperature?"},
+    {1.0e-30, 0.5,
+     "it is pressed flat where it stands: are modulus, density, and gravity in the units of the "
+     "input?"}};
 
 void MPMDoubts::check(Kind kind, double ratio, const std::string &who, const std::string &what)
 {
@@ -90,38 +95,45 @@ void MPMDoubts::check_time_step(const std::string &who)
 void MPMDoubts::check_regions()
 {
   const auto regions = domain->get_region_list();
-  const auto extent = [](const Region &r, int d) {
-    const double lo[] = {r.extent_xlo, r.extent_ylo, r.extent_zlo},
-                 hi[] = {r.extent_xhi, r.extent_yhi, r.extent_zhi};
-    return std::array<double, 2>{lo[d], hi[d]};
+  const auto at_low_end = [](const Region &r, int d) {
+    return d == 0 ? r.extent_xlo : d == 1 ? r.extent_ylo : r.extent_zlo;
   };
-  const auto is_known = [](const Region *r) {
-    return r->bboxflag && r->interior && !r->dynamic && r->nregion <= 1;
-  };
+  const auto users = find_fixes<MPMRegionImages>(lmp);
   for (const auto *region : regions) {
-    if (!is_known(region)) continue;
+    const bool sees = std::any_of(users.begin(), users.end(), [&](const auto *user) {
+      return user->sees_images(region->id);
+    });
+    if (sees) continue;
     for (int d = 0; d < domain->dimension; d++) {
-      const auto [lo, hi] = extent(*region, d);
-      const double length = domain->prd[d], least = 1.0e-6 * length;
-      const bool below = (lo < domain->boxlo[d] - least), above = (hi > domain->boxhi[d] + least);
-      // one that is as long as the box needs no images, and INF means the face of the box
-      if (!domain->periodicity[d] || below == above || hi - lo > length - least || lo < -INFINITE ||
-          hi > INFINITE || hi < domain->boxlo[d] || lo > domain->boxhi[d])
-        continue;
-      const double shift = below ? length : -length;
+      const double shift = image_shift(*domain, *region, d), least = 1.0e-6 * domain->prd[d];
+      if (shift == 0.0) continue;
       const bool has_image = std::any_of(regions.begin(), regions.end(), [&](const Region *other) {
-        if (!is_known(other)) return false;
-        const auto [low, high] = extent(*other, d);
-        return fabs(low - lo - shift) < least && fabs(high - hi - shift) < least;
+        return image_shift(*domain, *other, d) == -shift &&
+            fabs(at_low_end(*other, d) - at_low_end(*region, d) - shift) < least;
       });
       if (has_image || !told_of.insert(region->id).second || comm->me) continue;
       error->warning(FLERR,
                      "Region {} reaches across the periodic face {}{}, and has no image at the "
-                     "other end of the box: there it is no wall, body, or surface; use a union of "
-                     "it and a region that is shifted by {:.8g} along {}",
-                     region->id, (char) ('x' + d), below ? "lo" : "hi", shift, (char) ('x' + d));
+                     "other end of the box: there it is no wall, body, or surface; {} shifted by "
+                     "{:.8g} along {}",
+                     region->id, (char) ('x' + d), shift > 0.0 ? "lo" : "hi",
+                     region->dynamic
+                         ? "add the same fix with a region that moves as it does, and is"
+                         : "use a union of it and a region that is",
+                     shift, (char) ('x' + d));
     }
   }
+}
+
+void MPMDoubts::look_at_regions()
+{
+  if (--countdown > 0) return;
+  countdown = STEPS;
+  const auto regions = domain->get_region_list();
+  if (std::any_of(regions.begin(), regions.end(), [](const Region *r) {
+        return r->dynamic;
+      }))
+    check_regions();
 }
 
 void MPMDoubts::check_temperatures(const MPMField &field)
@@ -149,6 +161,32 @@ void MPMDoubts::check_temperatures(const MPMField &field)
             fmt::format("points begin with the temperature {:.6g}, and their strength ends at the "
                         "melting temperature {:.6g}",
                         -all[1], range->melting));
+  }
+}
+
+void MPMDoubts::check_weight(const MPMField &field)
+{
+  double g[3];
+  MPMGravity(lmp).find(g);
+  const double strength = MathExtra::len3(g);
+  if (!(strength > 0.0)) return;
+  for (const auto *of : field.materials) {
+    if (of->material->is_of_surfaces()) continue;
+    const double modulus = MPMRestModuli(*of->material).compression;
+    double mine[2] = {-INF, -INF}, all[2];    // highest, and minus the lowest
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field.is_point(i) || field.material_of(i) != of) continue;
+      const double height = -MathExtra::dot3(atom->x[i], g) / strength;
+      mine[0] = std::max(mine[0], height);
+      mine[1] = std::max(mine[1], -height);
+    }
+    MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
+    if (all[0] == -INF) continue;
+    const double weight = of->material->density() * strength * (all[0] + all[1]) * force->nktv2p;
+    check(SOFT_SOLID, modulus / weight, fmt::format("Fix mpm/material {}", of->id),
+          fmt::format("the modulus {:.4g} of this solid is less than the pressure of its own "
+                      "weight, {:.4g}",
+                      modulus, weight));
   }
 }
 

@@ -37,7 +37,8 @@ class MPMDoubts : protected Pointers {
     COLD,             ///< temperature of a body that radiates over that of ice that melts
     COLD_METAL,       ///< temperature over the reference temperature of a strength
     MOLTEN,           ///< temperature over the melting temperature of a strength
-    MOLTEN_WALL       ///< temperature of a wall over this melting temperature
+    MOLTEN_WALL,      ///< temperature of a wall over this melting temperature
+    SOFT_SOLID        ///< modulus of a solid at rest over the pressure of its own weight
   };
 
   explicit MPMDoubts(class LAMMPS *lmp) : Pointers(lmp) {}
@@ -51,11 +52,17 @@ class MPMDoubts : protected Pointers {
   /** Warns of regions across periodic faces: they have no images, so that walls, surfaces, and
    *  bodies that they describe end there. A region that is the image of another one is the remedy. */
   void check_regions();
+  /** Once in each step: the same for regions that move, from time to time. */
+  void look_at_regions();
   /** Warns of points that are as warm as the melting temperature of their strength when they are
    *  new, or far below its reference temperature. Collective. */
   void check_temperatures(const class MPMField &);
+  /** Warns of solids that their own weight presses to nothing. Collective. */
+  void check_weight(const class MPMField &);
 
  private:
+  static constexpr int STEPS = 16;    // from one look to the next
+  int countdown = 0;
   unsigned told = 0;                // bits of kinds
   std::set<std::string> told_of;    // IDs of regions
 };

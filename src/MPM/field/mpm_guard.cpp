@@ -110,10 +110,12 @@ void MPMGuard::check_inside_box()
       error->one(FLERR, "{} has lost its position at step {}: it is periods of the box away",
                  describe(i), update->ntimestep);
     else
-      error->one(FLERR,
-                 "{} has left the box through a fixed face; enlarge the box, put a fix "
-                 "mpm/boundary there, or let it go with fix mpm ... bad delete",
-                 describe(i));
+      error->one(
+          FLERR,
+          "{} has left the box through a fixed face; enlarge the box, put a fix "
+          "mpm/boundary there, or let it go with fix mpm ... bad delete (through a wall goes "
+          "only what is much too soft for its load: check moduli and units)",
+          describe(i));
   }
   if (deletes) delete_points(bad_points, true);
   if (field.options.delete_failed) delete_points(failed_points, false);

@@ -47,6 +47,16 @@ class MPMRefinedBody {
   ~MPMRefinedBody() = default;    // owned and deleted as a Fix
 };
 
+/** Makes of its region something that goes on behind periodic faces, while for others regions end
+ *  where they are. Implemented by a fix. */
+class MPMRegionImages {
+ public:
+  virtual bool sees_images(const std::string &region) const = 0;
+
+ protected:
+  ~MPMRegionImages() = default;    // owned and deleted as a Fix
+};
+
 /** Knows the points that can touch other atoms. Implemented by a fix. */
 class MPMListedPoints {
  public:

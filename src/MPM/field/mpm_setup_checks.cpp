@@ -88,6 +88,7 @@ void MPMSetupChecks::new_points()
 {
   if (update->ntimestep != 0) return;    // later, points may be as hot as they have become
   doubts.check_temperatures(field);
+  doubts.check_weight(field);
 }
 
 void MPMSetupChecks::coupling()
@@ -264,11 +265,17 @@ void MPMSetupChecks::points()
   const bool may_be_empty = std::any_of(actions.begin(), actions.end(), [this](const auto *action) {
     return action->may_be_empty(field);
   });
-  if (all[POINT] == 0 && !may_be_empty)
+  if (all[POINT] == 0 && !may_be_empty) {
+    const bigint others = points_in_both(lmp, 1, 1);
     error->all(FLERR,
                "Fix mpm {} has no material points: its group {} has no atoms with a volume; make "
-               "points with create_points, or give atoms a volume with set ... volume",
-               field.id(), group->names[field.fix.igroup]);
+               "points with create_points{}",
+               field.id(), group->names[field.fix.igroup],
+               others ? fmt::format(" and its keyword group, or put some of the {} that there are "
+                                    "into the group with the group command after it",
+                                    others)
+                      : ", or give atoms a volume with set ... volume");
+  }
   static const char *const refusals[NKINDS] = {
       nullptr,
       "{0} material points have no material, for instance point {1}: define a fix mpm/material for "
@@ -618,11 +625,35 @@ std::string LAMMPS_NS::remedy_of_step(LAMMPS *lmp)
       fixes[0]->id);
 }
 
+/** Does a fix move atoms of its group? Those of this package may hide it from LAMMPS. */
+static bool moves_atoms(const Fix &fix)
+{
+  const std::string style = fix.style;
+  return fix.time_integrate || style == "mpm" || style == "mpm/mesh" ||
+      style == "mpm/incompressible";
+}
+
+int LAMMPS_NS::seen_as_integrator(LAMMPS *lmp, const Fix &mine)
+{
+  const auto &fixes = lmp->modify->get_fix_list();
+  return std::none_of(fixes.begin(), fixes.end(), [&](const Fix *other) {
+    return other != &mine && other->time_integrate;
+  });
+}
+
+void LAMMPS_NS::allow_no_ghosts(LAMMPS *lmp, double h)
+{
+  const double nothing = 1.0e-8 * h;
+  double &cutoff = lmp->comm->cutghostuser;
+  const bool any = lmp->force->pair && lmp->force->pair->cutforce > 0.0;
+  if (!any && cutoff == 0.0) cutoff = nothing;
+  if (any && cutoff == nothing) cutoff = 0.0;
+}
+
 void LAMMPS_NS::refuse_other_integrators(LAMMPS *lmp, const Fix &mine)
 {
   for (const auto *other : lmp->modify->get_fix_list()) {
-    if (other == &mine || !(other->time_integrate || utils::strmatch(other->style, "^mpm$")))
-      continue;
+    if (other == &mine || !moves_atoms(*other)) continue;
     const bigint all = points_in_both(lmp, mine.groupbit, other->groupbit);
     if (all)
       lmp->error->all(FLERR, Error::NOLASTLINE,
@@ -638,7 +669,7 @@ bigint LAMMPS_NS::warn_of_forgotten_points(LAMMPS *lmp, const std::string &style
   const Atom *atom = lmp->atom;
   int moved = 0;    // groups that something moves
   for (const auto *ifix : lmp->modify->get_fix_list())
-    if (ifix->time_integrate || utils::strmatch(ifix->style, "^mpm$")) moved |= ifix->groupbit;
+    if (moves_atoms(*ifix)) moved |= ifix->groupbit;
   bigint mine[2] = {0, 0}, all[2];    // points, those that do not move
   tagint example = 0, example_all;
   for (int i = 0; i < atom->nlocal; i++) {

@@ -53,6 +53,13 @@ class MPMSetupChecks : protected Pointers {
 
   MPMUncoupled uncoupled;    ///< of all fields
 
+  /** Once in each step: what may become wrong in it. */
+  void look()
+  {
+    uncoupled.look();
+    doubts.look_at_regions();
+  }
+
   /** Stops with an error if points that meet grains have no radius or one that is too large, or are
    *  rings around an axis of symmetry. */
   void radii();
@@ -105,6 +112,15 @@ bigint points_in_both(class LAMMPS *, int one, int other);
 /** What to do about a time step that is above a limit: a fix mpm/dt which is there has found the limit
  *  some steps before. */
 std::string remedy_of_step(class LAMMPS *);
+
+/** What time_integrate of a fix that moves material points is to be. LAMMPS warns when the groups of
+ *  two integrators overlap, but atoms of this group that are no points may well be moved by others;
+ *  refuse_other_integrators() looks at the points. One of all fixes remains an integrator. */
+int seen_as_integrator(class LAMMPS *, const class Fix &mine);
+
+/** Points need no ghosts: without pair forces, a cutoff that is next to nothing spares LAMMPS's
+ *  warning about none. With them it would warn of this one, too. Called in init(). */
+void allow_no_ghosts(class LAMMPS *, double h);
 
 /** Stops with an error if another fix, too, moves material points in the group of a fix that moves
  *  them. Called at the start of a run by all ranks. */

@@ -126,17 +126,26 @@ void MPMTimeLimit::check()
   if (!(field.step_dt() <= limit)) {
     int i = 0;
     while (i < atom->nlocal - 1 && atom->tag[i] != tag) i++;
-    const std::string remedy = remedy_of_step(lmp) + ", or fix mpm ... dtcheck no";
-    if (c == 0.0)
-      error->one(FLERR,
-                 "Time step {:.6g} is above the limit {:.6g} of other physics, such as conduction "
-                 "of heat or flow of pore water, at step {}: {}; {}",
-                 field.step_dt(), limit, update->ntimestep, field.guard->describe(i), remedy);
+    const std::string remedy = remedy_of_step(lmp);
+    if (c == 0.0)    // dtcheck no would not make it stable
+      for (const auto *physics : field.plan->physics) {
+        const auto *const ifix = dynamic_cast<const Fix *>(physics);
+        if (!ifix || physics->stable_dt(field, tag) > limit) continue;
+        error->one(FLERR,
+                   "Time step {:.6g} is above the limit {:.6g} of fix {} {} at step {}: {}; {}{}",
+                   field.step_dt(), limit, ifix->style, ifix->id, update->ntimestep,
+                   field.guard->describe(i), remedy,
+                   utils::strmatch(ifix->style, "^mpm/heat$") ? ", more of its stages, or its "
+                                                                "keyword time sdirk2"
+                       : utils::strmatch(ifix->style, "^mpm/pore$") ? ", or more of its stages"
+                                                                    : "");
+      }
     error->one(
         FLERR,
         "Time step {:.6g} is above the limit {} = {:.6g} at step {}: {}, wave speed {:.6g}; {}",
         field.step_dt(), field.frame->is_total() ? "s h/c (s: smallest stretch)" : "h/(c+|v|)",
-        limit, update->ntimestep, field.guard->describe(i), c, remedy);
+        limit, update->ntimestep, field.guard->describe(i), c,
+        remedy + ", or fix mpm ... dtcheck no");
   }
 }
 

@@ -83,14 +83,11 @@ void FixMPMIncompressible::init()
                "Fix mpm/incompressible requires a box of constant size and shape: remove the fix "
                "that changes it");
   flow->init();
+  time_integrate = seen_as_integrator(lmp, *this);
   force_reneighbor = neighbor->includegroup ? 1 : 0;
   next_reneighbor = -1;
 
-  // points need no ghosts, see FixMPM::init()
-
-  const double nothing = 1.0e-8 * spacing();
-  if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
-  if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
+  allow_no_ghosts(lmp, spacing());
   atom->sortfreq = 0;
 }
 
@@ -127,7 +124,7 @@ void FixMPMIncompressible::pre_force(int)
  *  period. */
 void FixMPMIncompressible::initial_integrate(int)
 {
-  flow->checks.uncoupled.look();
+  flow->checks.look();
   flow->step();
   travel += flow->largest_velocity() * update->dt;
   for (int d = 0; d < domain->dimension; d++)

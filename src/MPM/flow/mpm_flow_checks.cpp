@@ -8,6 +8,7 @@
 
 #include "flow/mpm_flow_checks.h"
 
+#include "base/mpm_gravity.h"
 #include "field/mpm_setup_checks.h"
 
 #include "atom.h"
@@ -58,6 +59,7 @@ void MPMFlowChecks::check_points()
   bigint mine[3] = {0, 0, 0},
          all[3];    // points, those of another density, and those larger than a cell
   if (parts.solids) check_solids();
+  check_laws();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!parts.cells.is_point(i)) continue;
     const double mass = density(i) * atom->vfrac[i];
@@ -126,6 +128,26 @@ void MPMFlowChecks::check_solids()
       all[0] > (1.0 + MPMFlowLiquids::SAME_DENSITY) * liquids.least_density;
 }
 
+/** Warns of laws that fluid would have, if it were that of a fix mpm. */
+void MPMFlowChecks::check_laws()
+{
+  for (const auto *law : modify->get_fix_by_style("^mpm/material$")) {
+    bigint mine = 0, all;
+    for (int i = 0; i < atom->nlocal; i++)
+      mine += parts.cells.is_point(i) && atom->mask[i] & law->groupbit &&
+          !(parts.solids && parts.solids->holds(i));
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (!all || warned_of_laws) continue;
+    warned_of_laws = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "{}: the law of fix mpm/material {} does not act on {} points of fluid, which "
+                     "have the density and viscosity of fix {}: give it a group without them, or "
+                     "name their group with keyword solid if they are elastic",
+                     who, law->id, all, STYLE);
+  }
+}
+
 double MPMFlowChecks::density(int i) const
 {
   return parts.solids && parts.solids->holds(i) ? parts.solids->density_of(i)
@@ -160,6 +182,7 @@ void MPMFlowChecks::check_others(const Fix &mine)
                  "Fluids of fixes {} and {} (style {}) would go through each other: give their "
                  "points to one of these fixes",
                  id, other->id, STYLE);
+  MPMGravity{lmp};    // has it a direction?
   uncoupled.begin_run(mine);
   doubts.check_regions();
   if (modify->get_fix_by_style("^mpm$").empty())    // fix mpm would warn of these itself

@@ -45,6 +45,13 @@ class MPMFlowChecks : protected Pointers {
   /** Warns of a time step that nobody has set. */
   void check_time_step();
 
+  /** Once in each step: what may become wrong in it. */
+  void look()
+  {
+    uncoupled.look();
+    doubts.look_at_regions();
+  }
+
   MPMUncoupled uncoupled;    ///< other matter in the same box
 
  private:
@@ -54,11 +61,12 @@ class MPMFlowChecks : protected Pointers {
   const std::string id, who;
   MPMDoubts doubts;
   bool warned_of_size = false, warned_of_liquids = false, warned_of_regions = false,
-       warned_of_interfaces = false;
+       warned_of_interfaces = false, warned_of_laws = false;
 
   double density(int i) const;
   void check_liquids();
   void check_solids();
+  void check_laws();
 };
 
 }    // namespace LAMMPS_NS

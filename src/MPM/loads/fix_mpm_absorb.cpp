@@ -10,6 +10,7 @@
 
 #include "base/mpm_find_fixes.h"
 #include "base/mpm_options.h"
+#include "base/mpm_region_image.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_coupling.h"
 #include "field/mpm_field.h"
@@ -101,8 +102,8 @@ void FixMPMAbsorb::init()
 
 bool FixMPMAbsorb::absorbs(int i) const
 {
-  const double *const x = atom->x[i];
-  return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 && region->match(x[0], x[1], x[2]);
+  return (atom->mask[i] & groupbit) && atom->vfrac[i] > 0.0 &&
+      matches_with_images(*domain, *region, atom->x[i]);
 }
 
 /** Heat of a point whose material conducts it, 0 of others: what warmed it from the temperature

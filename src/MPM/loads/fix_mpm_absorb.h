@@ -16,6 +16,7 @@ FixStyle(mpm/absorb,FixMPMAbsorb);
 #define LMP_FIX_MPM_ABSORB_H
 
 #include "declare/option.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_traffic.h"
 
 #include "fix.h"
@@ -35,7 +36,7 @@ struct MPMAbsorbOptions {
 
 /** Removes the material points of its group that are in a region at the end of a step, and sums up
  *  their mass and other quantities. */
-class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
+class FixMPMAbsorb : public Fix, public MPMRegionImages, private MPMAbsorbOptions {
  public:
   FixMPMAbsorb(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::POST_INTEGRATE | FixConst::PRE_EXCHANGE; }
@@ -46,6 +47,7 @@ class FixMPMAbsorb : public Fix, private MPMAbsorbOptions {
   void restart(char *) override;
   double compute_scalar() override { return total.mass; }
   double compute_vector(int) override;
+  bool sees_images(const std::string &name) const override { return name == region_id; }
 
  private:
   Region *region = nullptr;

@@ -16,6 +16,7 @@ FixStyle(mpm/emit,FixMPMEmit);
 #define LMP_FIX_MPM_EMIT_H
 
 #include "declare/option.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_traffic.h"
 
@@ -54,12 +55,17 @@ struct MPMEmitOptions {
  *  where S is the distance that the flow has traveled so far and d is the distance between layers.
  *  A layer enters at its current place in the step in which this distance becomes positive. So the
  *  mass agrees with the flow for any velocity and time step. */
-class FixMPMEmit : public Fix, public MPMNodeAction, private MPMEmitOptions {
+class FixMPMEmit :
+    public Fix,
+    public MPMNodeAction,
+    public MPMRegionImages,
+    private MPMEmitOptions {
  public:
   FixMPMEmit(class LAMMPS *, int, char **);
   ~FixMPMEmit() override;
   int setmask() override { return FixConst::POST_INTEGRATE | FixConst::PRE_EXCHANGE; }
   void init() override;
+  bool sees_images(const std::string &name) const override { return name == region_id; }
   void setup_pre_exchange() override;
   void post_integrate() override;
   void pre_exchange() override;

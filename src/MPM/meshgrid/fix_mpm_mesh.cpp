@@ -119,6 +119,7 @@ void FixMPMMesh::init()
                    : "remove it, or give the points a fix mpm");
   }
 
+  time_integrate = seen_as_integrator(lmp, *this);
   find_contact();
   find_heat();
   uncoupled.begin_run(*this);

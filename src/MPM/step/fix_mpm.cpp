@@ -43,6 +43,7 @@
 #include "watch/mpm_energy_watch.h"
 #include "watch/mpm_fracture_watch.h"
 #include "watch/mpm_point_summary.h"
+#include "watch/mpm_shape_watch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,6 +75,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
   if (options.watches_fracture()) field->fracture_watch.reset(new MPMFractureWatch(lmp, *field));
   checks.reset(new MPMSetupChecks(lmp, *field));
   continuation.reset(new MPMContinuation(lmp, *field));
+  shape_watch.reset(new MPMShapeWatch(lmp, *field));
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix mpm {}, MPM package {}: spacing {} {}\n", id, MPM_VERSION, h,
                    options.declare(3).text());
@@ -129,17 +131,9 @@ void FixMPM::init()
     plan->make(MPMStages::make_scheme);
   }
 
-  // LAMMPS warns when the groups of two integrators overlap, but atoms of this group that are not
-  // material points may well be moved by others; MPMSetupChecks looks at the points
-  time_integrate = 1;
-  for (auto *other : modify->get_fix_list())
-    if (other != this && other->time_integrate) time_integrate = 0;
+  time_integrate = seen_as_integrator(lmp, *this);
 
-  // points need no ghosts; a cutoff that is next to nothing spares LAMMPS's warning about none. It
-  // would warn of this one, too, as soon as there is a pair style
-  const double nothing = 1.0e-8 * field->lattice.h;
-  if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
-  if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
+  allow_no_ghosts(lmp, field->lattice.h);
 
   // points are kept in order of blocks and cells here
   atom->sortfreq = 0;
@@ -191,6 +185,7 @@ void FixMPM::setup_pre_neighbor()
   const bool first = plan != nullptr;
   checks->run(MPMSetupChecks::POINTS, first);
   continuation->check(first);
+  shape_watch->check();
   if (force->pair) checks->run(MPMSetupChecks::PAIRS, first);
   field->frame->setup();
   checks->run(MPMSetupChecks::PLACES, first);
@@ -222,7 +217,7 @@ void FixMPM::setup(int)
 void FixMPM::initial_integrate(int /*vflag*/)
 {
   if (!plan) return;
-  checks->uncoupled.look();
+  checks->look();
   plan->step();
 }
 
@@ -266,6 +261,7 @@ void FixMPM::post_run()
   field->guard->wrap_far_points();
   field->ledger.start.clear();
   if (field->affine) field->affine->remember_velocities();
+  shape_watch->finish();
   if (field->counts().steps)
     field->plan->report(*field, bytes_per_point(), point_extremes(lmp, *field));
 }
