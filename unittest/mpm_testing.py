@@ -5,6 +5,7 @@
 A test file defines functions test_*() and ends with mpm_testing.main(globals()).
 """
 
+import ast
 import atexit
 import json
 import os
@@ -164,8 +165,44 @@ def processor_time():
     return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
 
 
+BOUNDS = os.environ.get("MPM_BOUNDS")    # folder of what tools/bounds.py reads
+
+
+def below(line, text, value, bound, equal):
+    """value < bound, or <=, recorded as *bounds/gtest/gtest.h* does for tests in C++."""
+    if all(isinstance(x, float) for x in (value, bound)) and value >= 0:
+        with open(os.path.join(BOUNDS, "%d.txt" % os.getpid()), "a") as out:
+            print(os.path.abspath(sys.argv[0]), line, "", value, bound, 0, 1, text, sep="\t", file=out)
+    return value <= bound if equal else value < bound
+
+
+class Recorder(ast.NodeTransformer):
+    """Calls below() for comparisons."""
+
+    def visit_Compare(self, node):
+        if len(node.ops) > 1 or not isinstance(node.ops[0], (ast.Lt, ast.LtE)):
+            return node
+        bound = node.comparators[0]
+        facts = [node.lineno, ast.unparse(bound)]
+        equal = ast.Constant(isinstance(node.ops[0], ast.LtE))
+        call = ast.Call(ast.Name("_below", ast.Load()), [*map(ast.Constant, facts), node.left, bound, equal], [])
+        return ast.fix_missing_locations(ast.copy_location(call, node))
+
+
+def record_bounds(scope):
+    """The tests again, with recorded assertions."""
+    with open(sys.argv[0]) as source:
+        tree = ast.parse(source.read())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assert):
+            node.test = Recorder().visit(node.test)
+    exec(compile(tree, sys.argv[0], "exec"), dict(scope, _below=below))
+
+
 def main(scope):
     """Run the tests in order of definition, or those named on the command line."""
+    if BOUNDS and "_below" not in scope:
+        record_bounds(scope)
     tests = [(name, f) for name, f in scope.items() if name.startswith("test_") and callable(f)]
     chosen = [word for word in sys.argv[1:] if not word.startswith("--")]
     if chosen:

@@ -132,7 +132,7 @@ TEST(Indentation, ConeThatIsAWall)
     for (int n = 80; n < 100; n++) mean += tool.force[n] / (tool.depth[n] * tool.depth[n]) / 20;
     EXPECT_NEAR(measured(strprintf("depth of %.1f cells: force/that of finite elements", 0.6 / h),
                          mean / exact),
-                1.0, 0.05);
+                1.0, 0.02);
   }
 }
 

@@ -285,7 +285,7 @@ TEST(Lists, TotalFrame)
     EXPECT_EQ(run.evaluate("pe"), 0.0);    // they have parted
   }
   EXPECT_GT(measured("updated", v[0]), 0.3);
-  EXPECT_NEAR(measured("total", v[1]), v[0], 0.05);
+  EXPECT_NEAR(measured("total", v[1]), v[0], 0.01);
 }
 
 // a grain between two bodies: the granular style moves it, this one couples the bodies only
@@ -470,7 +470,7 @@ SERIAL_TEST(Rings, RodsCollide)
     if (k == 95)
       EXPECT_NEAR(
           measured("stress / rho c v", (before - run.evaluate("v_p")) / (0.5 * 4.0 * M_PI * c * v)),
-          1.0, 0.05);
+          1.0, 0.02);
   }
   EXPECT_LT(measured("work of the contact and its energy", drift), 0.02);
   EXPECT_NEAR(run.sums().p[1], all, 1e-12);

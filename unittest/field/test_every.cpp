@@ -133,8 +133,8 @@ TEST(LargerStep, DeletesTheSamePoints)
   const double *a = one.fix_vector("grid", 11), *b = many.fix_vector("grid", 11);
   EXPECT_GT(a[6], 3.0);
   EXPECT_EQ(a[6], b[6]);
-  for (int k = 7; k < 11; k++) EXPECT_NEAR(a[k], b[k], 1.0e-9);
-  EXPECT_LT(largest_difference(places(many), places(one)), 1.0e-9);
+  for (int k = 7; k < 11; k++) EXPECT_NEAR(a[k], b[k], 1e-11);
+  EXPECT_LT(largest_difference(places(many), places(one)), 1e-10);
 }
 
 // What grains see: points that move without a jump at the start of a run, and are, with a constant
@@ -207,7 +207,7 @@ SERIAL_TEST(Seen, SpringIsNotDamped)
       turns += v * last < 0.0;
       last = v;
     }
-    EXPECT_LT(measured("spread of the energy", (most - least) / most), 1.0e-9) << every;
+    EXPECT_LT(measured("spread of the energy", (most - least) / most), 1e-11) << every;
     const double theta = std::acos(1.0 - 0.5 * omega * omega * step * step);
     EXPECT_NEAR(turns, cycles * theta / M_PI, 1.0) << every;
   }

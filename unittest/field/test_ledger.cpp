@@ -141,7 +141,7 @@ TEST(Force, DampingTakesTheEnergy)
             "run 300\n");
   const double start = 0.5 * 24.0 * 2.25, end = start * std::pow(1.0 - 0.2 * 0.01 / 0.5, 600);
   const double *e = run.compute_vector();
-  EXPECT_NEAR(e[KINETIC], end, 1e-11 * start);
+  EXPECT_NEAR(e[KINETIC], end, 1e-13 * start);
   EXPECT_NEAR(e[EXTERNAL], end - start, 1e-11 * start);
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * start);
 }
@@ -167,7 +167,7 @@ TEST(Force, WorkIsWhatAnAtomLoses)
     EXPECT_LT(run.evaluate("c_k"), 0.97 * start);
     EXPECT_GT(run.evaluate("vcm(heavy,y)"), 0.9);    // it has come back, and let go
     const double *e = run.compute_vector(), lost = start - run.evaluate("c_k");
-    EXPECT_NEAR(measured(strprintf("h = %g: work / loss", h), e[EXTERNAL] / lost), 1.0, 0.008);
+    EXPECT_NEAR(measured(strprintf("h = %g: work / loss", h), e[EXTERNAL] / lost), 1.0, 0.003);
     EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * start);
   }
 }

@@ -124,8 +124,8 @@ SERIAL_TEST(ReferenceUpdate, VolumeOnTheLattice)
     most = std::max(most, share[i]);
   }
   EXPECT_GT(volume, 1.3);
-  EXPECT_NEAR(least, 1.0, 0.1);
-  EXPECT_NEAR(most, 1.0, 0.1);
+  EXPECT_NEAR(least, 1.0, 0.03);
+  EXPECT_NEAR(most, 1.0, 0.03);
 }
 
 // a block that is thrown with a shear and vibrates: momentum is exact, energy does not jump, and
@@ -153,8 +153,8 @@ SERIAL_TEST(ReferenceUpdate, MomentumAndEnergy)
     angle[updates] = measured("angular momentum", after.L[2]);
     energy[updates] = measured("energy, share that is left", last / start);
   }
-  EXPECT_NEAR(angle[1], angle[0], 0.05 * std::abs(angle[0]));
-  EXPECT_NEAR(energy[1], energy[0], 0.1);
+  EXPECT_NEAR(angle[1], angle[0], 0.002 * std::abs(angle[0]));
+  EXPECT_NEAR(energy[1], energy[0], 0.002);
 }
 
 // Linear functions: after an update points are anywhere in their cells, as in the updated frame.

@@ -253,9 +253,9 @@ SERIAL_TEST(Plan, MovesPointsAsTheFixDoes)
   for (int i = 0; i < mine->nlocal; i++) {
     const int j = place.at(mine->tag[i]);
     for (int d = 0; d < 2; d++) {
-      EXPECT_NEAR(mine->x[i][d], its->x[j][d], 1e-10);
-      EXPECT_NEAR(mine->v[i][d], its->v[j][d], 1e-10);
+      EXPECT_NEAR(mine->x[i][d], its->x[j][d], 1e-12);
+      EXPECT_NEAR(mine->v[i][d], its->v[j][d], 1e-12);
     }
   }
-  EXPECT_LT(flow.results.residual, 1e-8);
+  EXPECT_LT(flow.results.residual, 3e-9);
 }

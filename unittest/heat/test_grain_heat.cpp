@@ -181,7 +181,7 @@ TEST(Ranks, Agree)
     EXPECT_NEAR(run.serial.compute_vector()[k], run.parallel.compute_vector()[k], 1e-10);
   EXPECT_NEAR(run.parallel.fix("heat")->compute_vector(8) /
                   run.serial.fix("heat")->compute_vector(8),
-              1.0, 1e-9);
+              1.0, 1e-12);
 }
 
 TEST(Restart, Continues)

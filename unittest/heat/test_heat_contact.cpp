@@ -101,11 +101,11 @@ SERIAL_TEST(Steady, FluxAndFaces)
                 "timestep 0.02\nrun 200\n");
       const double *const power = run.fix_vector("heat", 10);
       const double area = 4.0 / n;
-      EXPECT_NEAR(measured(strprintf("%g %d q", shift, n), power[CONTACT] / area), 4.0 / 7.0, 1e-5);
+      EXPECT_NEAR(measured(strprintf("%g %d q", shift, n), power[CONTACT] / area), 4.0 / 7.0, 2e-7);
       EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-6);
-      EXPECT_NEAR(power[1] / power[CONTACT], -1.0, 1e-6);
-      EXPECT_NEAR(face(run, "ma", 1.0 / n), 3.0 / 7.0, 1e-5);
-      EXPECT_NEAR(face(run, "mb", 1.0 / n), 1.0 / 7.0, 1e-5);
+      EXPECT_NEAR(power[1] / power[CONTACT], -1.0, 4e-7);
+      EXPECT_NEAR(face(run, "ma", 1.0 / n), 3.0 / 7.0, 2e-7);
+      EXPECT_NEAR(face(run, "mb", 1.0 / n), 1.0 / 7.0, 8e-8);
     }
 }
 
@@ -155,7 +155,7 @@ SERIAL_PARAMETER_TEST(Axis, HeatThroughTwoTubes, const char *,
           2.0 * PI * 4.0 * h / (std::log(1.5) + 1.0 / (1.5 * H) + std::log(4.0 / 3.0) / 4.0);
       EXPECT_NEAR(measured(strprintf("offset %g, H %g", offset, H), power[CONTACT] / exact), 1.0,
                   0.01);
-      EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-5);
+      EXPECT_NEAR(power[0] / power[CONTACT], 1.0, 1e-10);
     }
 }
 
@@ -173,7 +173,7 @@ SERIAL_TEST(HalfSpaces, Faces)
       const double *const power = run.fix_vector("heat", 10);
       EXPECT_NEAR(
           measured(strprintf("%g %d flux", shift, n), power[CONTACT] * n / 4.0 / std::sqrt(10.0)),
-          0.884043, 0.00884);
+          0.884043, 3e-4);
       EXPECT_NEAR(total_heat(run) / before, 1.0, 1e-13);
     }
 }
@@ -205,7 +205,7 @@ SERIAL_TEST(Perfect, IsTheLimit)
                                 std::fabs(face(run, "mb", 1.0 / n) - 1.0 / 3.0));
       EXPECT_NEAR(total_heat(run) / before, 1.0, 1e-13);
     }
-    EXPECT_LT(error[1], 0.001) << shift;
+    EXPECT_LT(error[1], 3e-4) << shift;
     EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 0.9) << shift;
   }
 }
@@ -220,7 +220,7 @@ SERIAL_TEST(Lumped, Decays)
             0.1) +
         "timestep 0.005\nrun 200\n");
     const double difference = Warm(run, "ma").heat() / 1.0 - Warm(run, "mb").heat() / 3.0;
-    EXPECT_NEAR(measured("difference", difference), H > 0.0 ? 0.513417 : 1.0, 0.00513);
+    EXPECT_NEAR(measured("difference", difference), H > 0.0 ? 0.513417 : 1.0, 8e-4);
     EXPECT_NEAR(total_heat(run), 1.0, 1e-13);
   }
 }
@@ -241,7 +241,7 @@ SERIAL_TEST(Gap, Insulates)
       else
         EXPECT_EQ(power, 0.0);
       EXPECT_NEAR((A - a) / all, 1e-4 * power / all, 1e-13);
-      EXPECT_NEAR((b - B) / all, 1e-4 * power / all, 1e-13);
+      EXPECT_NEAR((b - B) / all, 1e-4 * power / all, 1e-15);
       A = a;
       B = b;
     }
@@ -258,7 +258,7 @@ SERIAL_TEST(Moving, ExchangesTheSame)
     Scene run(Bars{40, 0.0, "6.0", 1.0, velocity}.text() + "timestep 2e-5\nrun 500\n");
     T[moves] = measured("heat of the first bar", Warm(run, "ma").heat() / (4.0 / 40));
   }
-  EXPECT_NEAR((1.0 - T[1]) / (1.0 - T[0]), 1.0, 0.01);
+  EXPECT_NEAR((1.0 - T[1]) / (1.0 - T[0]), 1.0, 0.001);
 }
 
 /** Two squares of 1 x 1 that touch, with 10 cells along their sides, conductivities of 1e-2 and
@@ -295,6 +295,11 @@ SERIAL_TEST(Edge, DoesNotDependOnTheTimeStep)
       for (int k = 0; k < 3; k++) power[is_long][k] = measured("power", all[9 + k]);
     }
     for (int k = 0; k < 3; k++) EXPECT_NEAR(power[1][k] / power[0][k], 1.0, 0.02) << k;
+    // steady: from finite volumes of 1/10 to 1/80, extrapolated. The flux is infinite at the end of
+    // the contact, so that it converges slowly: 22 % less here, and 14 and 8 % with 20 and 40 cells
+    EXPECT_NEAR(power[0][0] + power[0][1], -0.01, 1e-4);
+    EXPECT_NEAR(power[0][1] / 0.0196, 1.0, 0.25);
+    EXPECT_NEAR(-power[0][2] / 0.0196, 1.0, 0.25);
   }
 }
 

@@ -44,7 +44,7 @@ static double power(Scene &run, double dt, double end)
 {
   run_to(run, end, dt);
   const double *const flows = run.fix_vector("heat", 9);
-  EXPECT_NEAR(flows[0] / flows[1], -1.0, 1e-4);
+  EXPECT_NEAR(flows[0] / flows[1], -1.0, 1e-10);
   return flows[0];
 }
 
@@ -108,7 +108,7 @@ SERIAL_TEST(Layers, InParallel)
         12, {{"block INF INF 0 0.5 INF INF", 10.0}, {"block INF INF 0.5 1 INF INF", 1.0, capacity}},
         1.0, 0.25));
     EXPECT_NEAR(measured(strprintf("capacity %g", capacity), power(run, 0.005, 2.0)) / 5.5, 1.0,
-                1e-3);
+                1e-12);
   }
 }
 
@@ -379,7 +379,7 @@ SERIAL_TEST(Touching, SteadyFlowThroughALayerOfItsOwnField)
     Scene run(replaced(scene, "stages 100",
                        strprintf("stages 100 contact A B conductance %g", 12000 * ratio)));
     const double q = power(run, 0.25 / 144, 4.0) * 12 / 4.0 * (0.75 / ratio + 0.25);
-    EXPECT_NEAR(measured(strprintf("%g", ratio), q), 1.0, 1e-3);
+    EXPECT_NEAR(measured(strprintf("%g", ratio), q), 1.0, 4e-5);
   }
 }
 

@@ -90,7 +90,7 @@ TEST(Couette, IsWarmestAtAnInsulatedWall)
   History T(run, "temperature");
   run_to(run, 4.0);
   // T = y - y^2/2, mean of the last cell
-  EXPECT_NEAR(measured("at the wall", T.mean(1.0 - h, 1.0)) / (0.5 - h * h / 6.0), 1.0, 0.01);
+  EXPECT_NEAR(measured("at the wall", T.mean(1.0 - h, 1.0)) / (0.5 - h * h / 6.0), 1.0, 8e-4);
 }
 
 // a solid that has molten flows as its melt does
@@ -139,9 +139,9 @@ SERIAL_TEST(AdiabaticShear, OfABlock)
     strain += gamma / run.n();
   }
   EXPECT_NEAR(measured("strain", strain), 1.0, 0.02);
-  EXPECT_LT(measured("temperature", worst), 0.01);
+  EXPECT_LT(measured("temperature", worst), 8e-5);
   const double *const energy = run.compute_vector();
-  EXPECT_NEAR(energy[4] / energy[2], 0.9, 1e-10);
+  EXPECT_NEAR(energy[4] / energy[2], 0.9, 1e-12);
 }
 
 /** A bar that is heated at one end until that has molten, and pulled. */
@@ -186,7 +186,7 @@ TEST(Bar, LosesItsStrengthWhereItMelts)
   const double *const energy = run.compute_vector();
   EXPECT_NEAR(energy[10], 0.0, 1e-12);
   EXPECT_LT(std::fabs(measured("laws", energy[13])),
-            0.02 * measured("dissipated", energy[2] + energy[3]));
+            0.002 * measured("dissipated", energy[2] + energy[3]));
 }
 
 TEST(Bar, OnAnyNumberOfRanks)

@@ -109,7 +109,7 @@ SERIAL_PARAMETER_TEST(Law, IsThatOfTheMaterial, Homogeneous,
   }
   // the work is that of the stress of the law by the same rule, for the volume of the cell
   const double V = h.dim == 3 ? 24.0 : 12.0;
-  EXPECT_NEAR(run.fix("cell")->compute_scalar() / (V * point.power), 1.0, 1e-9);
+  EXPECT_NEAR(run.fix("cell")->compute_scalar() / (V * point.power), 1.0, 1e-10);
   const double *const e = run.compute_vector();
   EXPECT_DOUBLE_EQ(e[6], run.fix("cell")->compute_scalar());
   EXPECT_LT(std::fabs(e[10]), 1e-11 * std::fabs(e[6]));
@@ -127,12 +127,12 @@ SERIAL_TEST(Stress, NeoHookeanBar)
                         "fix dt all mpm/dt 0.3\nrun 3000\n",
                         stress));
     EXPECT_NEAR(measured("stretch", mean_F(run, XX)), stretch, 1e-5 * stretch);
-    EXPECT_NEAR(mean_stress(run, XX), stress, 1e-5 * std::fabs(stress));
-    EXPECT_NEAR(mean_stress(run, YY), 0.0, 1e-5 * std::fabs(stress));
-    EXPECT_NEAR(mean_F(run, YY), mean_F(run, ZZ), 1e-6);
+    EXPECT_NEAR(mean_stress(run, XX), stress, 3e-10 * std::fabs(stress));
+    EXPECT_NEAR(mean_stress(run, YY), 0.0, 1e-10 * std::fabs(stress));
+    EXPECT_NEAR(mean_F(run, YY), mean_F(run, ZZ), 1e-10);
     // nominal: P = sigma A/A0
     EXPECT_NEAR(mean_nominal(run, XX), mean_stress(run, XX) * mean_F(run, YY) * mean_F(run, ZZ),
-                1e-9 * std::fabs(stress));
+                1e-10 * std::fabs(stress));
   }
 }
 
@@ -146,11 +146,11 @@ SERIAL_TEST(Stress, FollowsAPath)
             "timestep 0.4\nrun 2500\n");
   // t = 1000
   EXPECT_NEAR(measured("shear", mean_stress(run, XY)), 2e-6, 2e-6 * 0.01);
-  EXPECT_NEAR(measured("modulus", mean_F(run, XY) * (1.0 / 3.0) / 2e-6), 1.0, 0.01);
+  EXPECT_NEAR(measured("modulus", mean_F(run, XY) * (1.0 / 3.0) / 2e-6), 1.0, 8e-4);
   // plane strain: sigma_x = E/(1 - nu^2) e_x, e_y = -nu/(1 - nu) e_x
   EXPECT_NEAR(measured("E'", mean_stress(run, XX) / 1e-5 / (0.83333333333333333 / 0.9375)), 1.0,
-              0.01);
-  EXPECT_NEAR(measured("contraction", (mean_F(run, YY) - 1.0) / -1e-5 * 3.0), 1.0, 0.01);
+              4e-5);
+  EXPECT_NEAR(measured("contraction", (mean_F(run, YY) - 1.0) / -1e-5 * 3.0), 1.0, 0.001);
 }
 
 /** Layers across x of two materials (moduli 1 and 10, Poisson numbers 0.25 and 0.4); n cells. */
@@ -227,7 +227,7 @@ SERIAL_TEST(Laminate, Compliance)
                       s, 0.5 * s));
   EXPECT_NEAR(measured("along", (mean_F(run, XX) - 1.0) / s / (C.C22 / det)), 1.0, 1e-4);
   EXPECT_NEAR(measured("across", (mean_F(run, YY) - 1.0) / s / (-C.C12 / det)), 1.0, 1e-4);
-  EXPECT_NEAR(measured("shear", mean_F(run, XY) / s / (0.5 / C.C66)), 1.0, 1e-4);
+  EXPECT_NEAR(measured("shear", mean_F(run, XY) / s / (0.5 / C.C66)), 1.0, 1e-5);
 }
 
 // a plate with holes is pulled until it yields: the ledger knows the work of the mean motion
@@ -243,7 +243,7 @@ SERIAL_TEST(Cell, WorkAndLedger)
   const double energy = run.compute_scalar(), work = run.fix("cell")->compute_scalar();
   EXPECT_DOUBLE_EQ(e[6], work);
   EXPECT_LT(std::fabs(measured("residual over work", e[10] / work)), 1e-11);
-  EXPECT_NEAR(measured("energy and losses over work", (energy - e[8]) / work), 1.0, 0.02);
+  EXPECT_NEAR(measured("energy and losses over work", (energy - e[8]) / work), 1.0, 0.003);
   EXPECT_GT(e[2], 0.1 * work);
   EXPECT_GT(std::fabs(mean_stress(run, XX)), 50 * std::fabs(mean_stress(run, YY)));
 }
@@ -287,12 +287,12 @@ SERIAL_TEST(Cell, Unloads)
   EXPECT_NEAR(loaded, 0.02, 1e-12);
   EXPECT_NEAR(measured("stress over strength", mean_stress(run, XX) / 0.5), 1.0, 1e-3);
   run.commands("fix_modify cell x stress 0\nfix dt all mpm/dt 0.5 until 80\nrun 10000\n");
-  EXPECT_NEAR(mean_stress(run, XX), 0.0, 1e-4);
+  EXPECT_NEAR(mean_stress(run, XX), 0.0, 1e-10);
   EXPECT_NEAR(measured("strain that is gone over stress/E",
                        std::log((1.0 + loaded) / mean_F(run, XX)) / (0.5 / E)),
               1.0, 5e-3);
   // the plastic strain has no volume
-  EXPECT_NEAR(mean_F(run, XX) * mean_F(run, YY) * mean_F(run, ZZ), 1.0, 1e-5);
+  EXPECT_NEAR(mean_F(run, XX) * mean_F(run, YY) * mean_F(run, ZZ), 1.0, 1e-10);
   EXPECT_THAT(run.error("fix_modify cell x rate 1\n"), ::testing::HasSubstr("must be one of"));
   const auto told =
       lines_that_say(cell(2, "lj", "density 1 linear 1 0.3") +
@@ -313,10 +313,10 @@ SERIAL_TEST(Cell, Units)
     run.commands(strprintf("variable s equal %.17g\ntimestep 1e-4\nrun 1\n", 2.0 * 16.0 / unit));
     const double stress = 300 * 0.75 / (1.25 * 0.5) * 1e-4;
     EXPECT_NEAR(mean_F(run, YY) - 1.0, 1e-8, 1e-14) << units;
-    EXPECT_NEAR(mean_stress(run, XX) / stress, 1.0, 1e-3) << units;
+    EXPECT_NEAR(mean_stress(run, XX) / stress, 1.0, 2e-4) << units;
     EXPECT_NEAR(run.fix("cell")->compute_scalar() * run.lmp->force->nktv2p /
                     (0.5 * 24.0 * stress * 1e-4),
-                1.0, 1e-3)
+                1.0, 5e-5)
         << units;
   }
 }

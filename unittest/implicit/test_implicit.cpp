@@ -122,7 +122,7 @@ SERIAL_TEST(Beam, BendsUnderItsWeight)
       EXPECT_NEAR(run.fix("clamp")->compute_vector(1), -weight, 1e-6 * weight);
       const double *const e = run.compute_vector();
       EXPECT_LT(std::fabs(e[10]), 1e-12 * e[5]) << "residual";
-      EXPECT_NEAR(e[1] / e[5], 0.5, 1e-3)
+      EXPECT_NEAR(e[1] / e[5], 0.5, 1e-4)
           << "stored: half of the work of a load that is there at once";
       for (int i = 0; i < run.n(); i++)
         for (int d = 0; d < 3; d++) EXPECT_EQ(run.v()[i][d], 0.0);
@@ -214,7 +214,7 @@ SERIAL_TEST(Stabilize, FromTheStepThatNeedsIt)
     // of works of the first seven steps, whose loose nodes go far
     const double *const e = eight.compute_vector("e");
     EXPECT_LT(std::fabs(measured(method + ": residual", e[10])),
-              1e-9 * std::max({e[1], -e[8], std::fabs(e[9])}));
+              1e-10 * std::max({e[1], -e[8], std::fabs(e[9])}));
     seven.commands("unfix solve\nfix solve all mpm/implicit " + method +
                    " solver multigrid tolerance 1e-10 stabilize 1\nrun 1\n");
     const auto a = eight.gather(), b = seven.gather();
@@ -222,7 +222,7 @@ SERIAL_TEST(Stabilize, FromTheStepThatNeedsIt)
     for (std::size_t k = 0; k < a.size(); k++)
       for (int d = 0; d < 2; d++) {
         EXPECT_NEAR(a[k].x[d], b[k].x[d], 1e-9);
-        EXPECT_NEAR(a[k].v[d], b[k].v[d], 1e-9);
+        EXPECT_NEAR(a[k].v[d], b[k].v[d], 1e-12);
       }
   }
 }
@@ -244,7 +244,7 @@ SERIAL_TEST(Stabilize, LinearMotionsAreFree)
     const auto a = without.gather(), b = with.gather();
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t k = 0; k < a.size(); k++)
-      for (int d = 0; d < 2; d++) EXPECT_NEAR(a[k].x[d], b[k].x[d], 1e-8);
+      for (int d = 0; d < 2; d++) EXPECT_NEAR(a[k].x[d], b[k].x[d], 9e-11);
     EXPECT_LT(solved(with, 11), 1e-10 * 0.551 * 0.5 * 1e6 * 0.01);
   }
 }
@@ -272,7 +272,7 @@ SERIAL_TEST(Stabilize, Ledger)
                 (method == "euler" ? "timestep 0.01\n" : "") + "run 5\n");
       integration[with] = run.compute_vector("e")[9];
       transfer[with] = run.compute_vector("e")[8];
-      EXPECT_LT(std::fabs(run.compute_vector("e")[10]), 1e-9 * run.compute_scalar("e")) << method;
+      EXPECT_LT(std::fabs(run.compute_vector("e")[10]), 1e-10 * run.compute_scalar("e")) << method;
     }
     measured(method + ": integration", integration[1] / integration[0]);
     measured(method + ": transfer", transfer[1] - transfer[0]);
@@ -311,7 +311,7 @@ SERIAL_TEST(Beam, ConvergesQuadratically)
       two(replaced(scene, "fix g all gravity 300", "fix g all gravity 150") +
           "run 1\nfix g all gravity 300 vector 0 -1 0\nrun 1\n");
   EXPECT_LT(measured("tip", one.compute_scalar("low")), -0.3);
-  EXPECT_NEAR(one.compute_scalar("low"), two.compute_scalar("low"), 1e-8);
+  EXPECT_NEAR(one.compute_scalar("low"), two.compute_scalar("low"), 4e-11);
 }
 
 // the change of forces in a direction against differences of forces, and the diagonal of the same
@@ -375,10 +375,10 @@ SERIAL_TEST(Vibration, LosesWhatIsFast)
     return measured(
         implicit, std::hypot(mode[steps][0], mode[steps][1]) / std::hypot(mode[0][0], mode[0][1]));
   };
-  EXPECT_LT(left("alpha rho 0.5", 200.0, 40), 1e-6);    // 40^2/2^40 is 1e-9
-  EXPECT_LT(left("hht rho 0.5", 200.0, 80), 1e-6);
+  EXPECT_LT(left("alpha rho 0.5", 200.0, 40), 1e-7);    // 40^2/2^40 is 1e-9
+  EXPECT_LT(left("hht rho 0.5", 200.0, 80), 1e-7);
   EXPECT_NEAR(left("alpha rho 0.5", 0.05, 40), 1.0, 1e-3);
-  EXPECT_NEAR(left("newmark", 200.0, 40), 1.0, 0.5);
+  EXPECT_NEAR(left("newmark", 200.0, 40), 1.0, 0.2);
 }
 
 // a free body that turns in large steps keeps its momentum
@@ -408,7 +408,7 @@ SERIAL_TEST(Disk, KeepsItsAngularMomentum)
       run.commands("run 20\n");
       const auto after = run.sums();
       for (int d = 0; d < 2; d++) EXPECT_NEAR(after.p[d] / before.p[d], 1.0, 1e-10);
-      EXPECT_NEAR(measured(options + ": angular momentum", after.L[2] / before.L[2]), 1.0, 1e-8);
+      EXPECT_NEAR(measured(options + ": angular momentum", after.L[2] / before.L[2]), 1.0, 1e-10);
       measured("kinetic energy", after.kinetic / before.kinetic);
     }
 }
@@ -471,7 +471,7 @@ SERIAL_TEST(Beam, EnergiesOfDynamics)
               "run 50\n");
     const double *const e = run.compute_vector();
     measured(std::string(implicit) + " residual", e[10] / e[5]);
-    EXPECT_LT(std::fabs(e[10]), 1e-9 * e[5]);
+    EXPECT_LT(std::fabs(e[10]), 1e-10 * e[5]);
     measured("integration", e[9] / e[5]);
     measured("transfer", e[8] / e[5]);
     measured("steps of the explicit limit", 0.002 / run.stable_dt());
@@ -565,11 +565,11 @@ SERIAL_TEST(Multigrid, SlipOnSlopes)
     const auto a = levels.gather(), b = blocks.gather();
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t k = 0; k < a.size(); k++)
-      for (int d = 0; d < 2; d++) EXPECT_NEAR(a[k].x[d], b[k].x[d], 1e-7);
+      for (int d = 0; d < 2; d++) EXPECT_NEAR(a[k].x[d], b[k].x[d], 1e-10);
     double up = 0.0, mass = 0.0;
     for (const char *id : {"f", "w"}) up += levels.fix(id)->compute_vector(1);
     for (int i = 0; i < levels.n(); i++) mass += levels.lmp->atom->rmass[i];
-    EXPECT_NEAR(up, -5.0 * mass, 1e-7 * mass);
+    EXPECT_NEAR(up, -5.0 * mass, 1e-9 * mass);
 
     // of the factors that steps with inertia keep
     Scene euler(replaced(scene("euler solver multigrid"), "timestep 1.0", "timestep 0.05"));
@@ -970,7 +970,7 @@ SERIAL_TEST(Indenter, IsInBalanceWithTheFloor)
     const double push[2] = {run.fix("push")->compute_vector(0), run.fix("push")->compute_vector(1)};
     EXPECT_GT(push[1], 2e4) << options;
     for (int d = 0; d < 2; d++)
-      EXPECT_NEAR(run.fix("floor")->compute_vector(d), -push[d], 1e-7 * push[1]) << options;
+      EXPECT_NEAR(run.fix("floor")->compute_vector(d), -push[d], 1e-8 * push[1]) << options;
     const double *const e = run.compute_vector();
     EXPECT_LT(std::fabs(e[10]), 1e-9 * e[6]) << options;
     EXPECT_GT(e[6], e[1]) << "work of the last force of each step is more than what is stored";
@@ -1121,7 +1121,7 @@ SERIAL_TEST(Parts, LeadToTheSameEnd)
     EXPECT_LT(parts.fix("solve")->compute_scalar(), 1e-11);
     EXPECT_LT(measured("difference", difference(whole.gather(), parts.gather())), 1e-8);
     EXPECT_NEAR(whole.fix("clamp")->compute_vector(1), parts.fix("clamp")->compute_vector(1),
-                1e-6 * std::fabs(whole.fix("clamp")->compute_vector(1)));
+                1e-9 * std::fabs(whole.fix("clamp")->compute_vector(1)));
     const double *const e = whole.compute_vector(), *const f = parts.compute_vector();
     for (const int k : {5, 6, 10})
       EXPECT_NEAR(e[k], f[k], 1e-7 * (std::fabs(e[5]) + std::fabs(e[6])));

@@ -80,7 +80,7 @@ PARAMETER_TEST(Bar, HasThermalStress, const char *, Values("frame total", ""))
     }
     EXPECT_NEAR(measured(strprintf("%d steps, stress", steps), sum / exact), 1.0,
                 grid.empty() ? 0.01 : 0.003);
-    EXPECT_LT(most, 0.03 * std::fabs(exact));
+    EXPECT_LT(most, 1e-5 * std::fabs(exact));
     EXPECT_NEAR(measured("wall", run.fix("left")->compute_vector(0) / (exact * 0.2)), 1.0, 0.01);
     EXPECT_NEAR(run.fix("right")->compute_vector(0) / (exact * 0.2), -1.0, 0.01);
   }
@@ -103,7 +103,7 @@ SERIAL_TEST(Tube, HasThermalStress)
     }
     error[k] = measured(strprintf("%d cells, rms error of stresses", 8 << k), std::sqrt(sum / all));
   }
-  EXPECT_LT(error[1], 0.01);
+  EXPECT_LT(error[1], 0.002);
   EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 1.5);
 }
 

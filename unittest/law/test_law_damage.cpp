@@ -59,15 +59,15 @@ TEST(JohnsonCookDamage, FailureStrainAtConstantTriaxiality)
       shear(p, 0.005);
       const double e = value(p, "eplastic");
       if (value(p, "damage") < 1.0) {
-        EXPECT_NEAR(value(p, "used"), e / wanted, 1e-8);
-        EXPECT_NEAR(p.vonmises(), SIGMAY, 1e-8 * SIGMAY);
+        EXPECT_NEAR(value(p, "used"), e / wanted, 1e-9);
+        EXPECT_NEAR(p.vonmises(), SIGMAY, 1e-12 * SIGMAY);
         if (k.triaxiality != 0.0) EXPECT_NEAR(mean(p) / SIGMAY / k.triaxiality, 1.0, 1e-7);
       } else {
         EXPECT_LT(before, wanted * (1 + 1e-8));
         EXPECT_GE(e, wanted * (1 - 1e-8));
         EXPECT_EQ(p.vonmises(), 0.0);
         EXPECT_NEAR(p.pressure(), k.triaxiality < 0.0 ? -k.triaxiality * SIGMAY : 0.0,
-                    1e-7 * SIGMAY);
+                    3e-8 * SIGMAY);
       }
     }
     EXPECT_LT(steps, 2000);
@@ -87,7 +87,7 @@ TEST(JohnsonCookDamage, TriaxialityPaths)
       shear(p, 0.005);
       EXPECT_NEAR(ratio, triaxiality, 1e-8 * (1 + std::fabs(triaxiality)));
       expected += (value(p, "eplastic") - e) / failure_strain(std::min(triaxiality, 1.5));
-      EXPECT_NEAR(value(p, "used"), expected, 1e-8);
+      EXPECT_NEAR(value(p, "used"), expected, 1e-12);
       EXPECT_GE(value(p, "used"), before);
       before = value(p, "used");
       e = value(p, "eplastic");
@@ -107,10 +107,10 @@ TEST(JohnsonCookDamage, RateAndTemperature)
       const double yield = SIGMAY / (3 * 77e9);
       shear(p, 0.01 + yield, 0.01 / rate);
       const double e = value(p, "eplastic");
-      EXPECT_NEAR(e, 0.01, 1e-4);
+      EXPECT_NEAR(e, 0.01, 1e-13);
       const double fast = 1 + 0.002 * std::log(std::max(e / 0.01 * rate / 0.5, 1.0));
       const double hot = 1 + 0.61 * std::min(std::max((T - 293) / 1500, 0.0), 1.0);
-      EXPECT_NEAR(value(p, "used"), e / (3.49 * fast * hot), 1e-8 * e);
+      EXPECT_NEAR(value(p, "used"), e / (3.49 * fast * hot), 1e-12 * e);
     }
   EXPECT_THROW(make(STEEL + "damage johnson/cook 1 1 -1 temperature 0.6 1793 293"), MaterialError);
 }
@@ -136,7 +136,7 @@ TEST(JohnsonCookDamage, SofteningIsLinearInWhatIsUsed)
     const double e = value(p, "eplastic");
     const double D = std::min(std::max((e / 0.1 - 0.4) / 0.6, 0.0), 1.0);
     EXPECT_NEAR(value(p, "damage"), D, 1e-10);
-    if (e > 0.0) EXPECT_NEAR(p.vonmises(), (1 - D) * SIGMAY, 1e-9 * SIGMAY);
+    if (e > 0.0) EXPECT_NEAR(p.vonmises(), (1 - D) * SIGMAY, 1e-12 * SIGMAY);
   }
   EXPECT_EQ(value(p, "damage"), 1.0);
 }
@@ -149,7 +149,7 @@ TEST(CockcroftLathamDamage, FailureStrain)
   double ea = 0.0, eb = 0.0;
   while (value(a, "used") < 1.0 - 2 * 5e-4 * SIGMAY / 2e8) {
     a.step_uniaxial_stress(1.0, 5e-4);
-    EXPECT_NEAR(value(a, "used"), value(a, "eplastic") * SIGMAY / 2e8, 1e-8);
+    EXPECT_NEAR(value(a, "used"), value(a, "eplastic") * SIGMAY / 2e8, 1e-12);
   }
   while (value(a, "damage") < 1.0) {    // no motion keeps the lateral stress zero at the end
     ea = value(a, "eplastic");
@@ -223,13 +223,13 @@ TEST(DamageEnergy, HeatFollowsTheReducedPlasticWork)
   for (int i = 0; i < n; i++) shear(p, 0.3 / n);
   EXPECT_EQ(value(p, "damage"), 1.0);
   // integral of (1 - e/0.2) sigma_y de
-  EXPECT_NEAR(p.work[PLASTIC], 0.1 * SIGMAY, 2e-4 * 0.1 * SIGMAY);
-  EXPECT_NEAR(p.work[HEAT], 0.8 * p.work[PLASTIC], 1e-10 * p.work[PLASTIC]);
-  EXPECT_NEAR(7850 * 460 * (value(p, "temperature") - 293), p.work[HEAT], 1e-9 * p.work[HEAT]);
+  EXPECT_NEAR(p.work[PLASTIC], 0.1 * SIGMAY, 3e-5 * 0.1 * SIGMAY);
+  EXPECT_NEAR(p.work[HEAT], 0.8 * p.work[PLASTIC], 1e-12 * p.work[PLASTIC]);
+  EXPECT_NEAR(7850 * 460 * (value(p, "temperature") - 293), p.work[HEAT], 1e-12 * p.work[HEAT]);
   EXPECT_NEAR(value(p, "heat"), p.work[HEAT], 1e-2 * p.work[HEAT]);    // of the start of steps
   // the rest: elastic energy, released in proportion
   const double tau = SIGMAY / std::sqrt(3.0);
-  EXPECT_NEAR(p.work[FRACTURE], tau * tau / (2 * 77e9), 1e-2 * tau * tau / (2 * 77e9));
+  EXPECT_NEAR(p.work[FRACTURE], tau * tau / (2 * 77e9), 6e-4 * tau * tau / (2 * 77e9));
 }
 
 TEST(DamageEnergy, FailedPointsSlideWithFriction)
@@ -248,10 +248,10 @@ TEST(DamageEnergy, FailedPointsSlideWithFriction)
   steps(p, slide, 1.0, 200);
   const double work = p.work[FRACTURE], power = p.power;
   steps(p, slide, 1.0, 100);
-  EXPECT_NEAR(p.pressure(), pressure, 1e-9 * pressure);
-  EXPECT_NEAR(p.vonmises() / std::sqrt(3.0), mu * pressure, 1e-10 * pressure);
-  EXPECT_NEAR(p.stress(3), mu * pressure, 1e-3 * pressure);    // sliding has turned the deviator
-  EXPECT_NEAR(p.work[FRACTURE] - work, p.power - power, 1e-6 * (p.power - power));
+  EXPECT_NEAR(p.pressure(), pressure, 1e-12 * pressure);
+  EXPECT_NEAR(p.vonmises() / std::sqrt(3.0), mu * pressure, 1e-12 * pressure);
+  EXPECT_NEAR(p.stress(3), mu * pressure, 2e-5 * pressure);    // sliding has turned the deviator
+  EXPECT_NEAR(p.work[FRACTURE] - work, p.power - power, 5e-9 * (p.power - power));
   // pulled apart it bears nothing, pressed again it bears pressure
   steps(p, pull, 1.0, 20);
   EXPECT_NEAR(p.vonmises() + std::fabs(p.pressure()), 0.0, 1e-6);
@@ -276,8 +276,8 @@ TEST(RankineDamage, TensileStrength)
     const double e = 1e-7, lateral = -NU_CONCRETE * e;
     steps(p, diagonal(e, lateral, lateral), 1.0);    // uniaxial stress
   }
-  EXPECT_NEAR(last, 3e6, E_CONCRETE * 1.01e-7);
-  EXPECT_NEAR(p.stress(0), 0.0, 1.0);
+  EXPECT_NEAR(last, 3e6, E_CONCRETE * 3e-8);
+  EXPECT_NEAR(p.stress(0), 0.0, 1e-8);
   // compression: no largest principal stress
   MaterialPoint q(*material);
   for (int i = 0; i < 1000; i++) q.step_uniaxial_stress(-1e-5, 1.0);
@@ -307,7 +307,7 @@ TEST(RankineDamage, FractureEnergyDoesNotDependOnTheSpacing)
       EXPECT_NEAR(p.work[FRACTURE] * h / GC, 1.0, 1e-3);
       EXPECT_NEAR(p.power * h / GC, 1.0, 1e-3);
       if (h < 0.5 * limit)
-        EXPECT_NEAR(peak, ft, 3e-3 * ft);
+        EXPECT_NEAR(peak, ft, 8e-4 * ft);
       else
         EXPECT_LT(peak, 0.9 * ft);
     }
@@ -323,10 +323,10 @@ TEST(RankineDamage, GrowsUnderPressureByTheEnergyOfShear)
   steps(p, {volume, angle, 0, angle, volume, 0, 0, 0, volume}, 1.0);
   const double r = value(p, "opening"), rf = value(p, "ductility");
   EXPECT_LT(mean(p), -ft);
-  EXPECT_NEAR(r, 1.8, 0.01);    // (3 - 1.2) ft over the strength
+  EXPECT_NEAR(r, 1.8, 0.002);    // (3 - 1.2) ft over the strength
   // at the strength the energy of shear is 1/r^2 of this one
   EXPECT_NEAR(rf, GC / (h * value(p, "shear_energy") / (r * r)), 1e-10 * rf);
-  EXPECT_NEAR(value(p, "shear_energy"), 9.0 * ft * ft / (2.0 * G), 1e-3 * 9.0 * ft * ft / G);
+  EXPECT_NEAR(value(p, "shear_energy"), 9.0 * ft * ft / (2.0 * G), 1e-12 * 9.0 * ft * ft / G);
   EXPECT_NEAR(value(p, "damage"), 1.0 - (rf - r) / (r * (rf - 1.0)), 1e-12);
 }
 
@@ -368,7 +368,7 @@ TEST(RankineDamage, StrengthsAreWeibullDistributed)
     other->initialize(x, history.data());
     differ += std::fabs(history[at] - u[i]) / n;
   }
-  EXPECT_NEAR(differ, 1.0 / 3.0, 0.01);    // independent of each other
+  EXPECT_NEAR(differ, 1.0 / 3.0, 8e-4);    // independent of each other
   for (int lag : {1, 25, 500}) {           // and of their neighbours
     double c = 0.0;
     for (int i = 0; i + lag < n; i++) c += 12 * (u[i] - 0.5) * (u[i + lag] - 0.5) / n;
@@ -397,7 +397,7 @@ TEST(RankineDamage, StrengthsAreWeibullDistributed)
     double sum = 0.0, logs = 0.0;
     for (const double s : strength) sum += s / n;
     const double scale = sigma * std::pow(V0 / volume, 1 / m);
-    EXPECT_NEAR(sum, scale * std::tgamma(1 + 1 / m), 0.005 * scale);
+    EXPECT_NEAR(sum, scale * std::tgamma(1 + 1 / m), 6e-4 * scale);
     // modulus by maximum likelihood
     double k = 5.0;
     for (const double s : strength) logs += std::log(s / scale) / n;
@@ -447,7 +447,7 @@ TEST(GradyKippDamage, ConstantStrainRate)
   }
   // strength ~ rate^(3/(m+3))
   EXPECT_NEAR(std::log(strengths[2] / strengths[1]) / std::log(100.0), 3 / (m + 3), 1e-3);
-  EXPECT_NEAR(std::log(strengths[1] / strengths[0]) / std::log(100.0), 3 / (m + 3), 1e-3);
+  EXPECT_NEAR(std::log(strengths[1] / strengths[0]) / std::log(100.0), 3 / (m + 3), 3e-4);
 }
 
 struct Gurson {
@@ -509,12 +509,12 @@ TEST(GursonLaw, HydrostaticTension)
         error[level][k] = std::max(error[level][k], std::fabs(now[k] - known / (k ? 1 : 4e8)));
       }
     }
-    EXPECT_NEAR(p.vonmises(), 0.0, 1e-6 * 4e8);
+    EXPECT_NEAR(p.vonmises(), 0.0, 1e-12 * 4e8);
   }
   const double tolerance[3] = {1e-2, 1e-4, 1e-3};
   for (int k = 0; k < 3; k++) {
     EXPECT_LT(error[2][k], tolerance[k]) << k;
-    EXPECT_NEAR(std::log2(error[1][k] / error[2][k]), 1.0, 0.25) << k;
+    EXPECT_NEAR(std::log2(error[1][k] / error[2][k]), 1.0, 0.02) << k;
   }
 }
 
@@ -540,7 +540,7 @@ TEST(GursonLaw, FailedPointsCloseBeforeTheyBearPressure)
   EXPECT_NEAR(value(p, "gap"), opened + 0.01, 1e-12);
   change(-opened - 0.011, 4);
   EXPECT_EQ(value(p, "gap"), 0.0);
-  EXPECT_NEAR(std::exp(volume) * p.pressure(), GTN.K * 0.001, 1e-8 * GTN.K);
+  EXPECT_NEAR(std::exp(volume) * p.pressure(), GTN.K * 0.001, 1e-12 * GTN.K);
 }
 
 TEST(GursonLaw, ReturnEndsOnTheYieldSurface)
@@ -566,7 +566,7 @@ TEST(GursonLaw, ReturnEndsOnTheYieldSurface)
           ASSERT_TRUE(std::isfinite(p.vonmises()) && std::isfinite(p.pressure())) << scale;
           ASSERT_GE(p.batch.work[PLASTIC], 0.0);
           if (value(p, "damage") >= 1.0) {
-            EXPECT_NEAR(p.vonmises(), 0.0, 1.0);
+            EXPECT_NEAR(p.vonmises(), 0.0, 0.05);
             EXPECT_GE(p.pressure(), -1.0);
             failed++;
             continue;
@@ -582,7 +582,7 @@ TEST(GursonLaw, ReturnEndsOnTheYieldSurface)
             EXPECT_NEAR(phi, 0.0, 1e-9) << "strain " << scale << " f " << value(p, "porosity");
             plastic++;
           } else
-            EXPECT_LE(phi, 1e-9);
+            EXPECT_LE(phi, 1e-12);
         }
       }
     }
@@ -600,10 +600,10 @@ TEST(GursonLaw, NoVoids)
     for (int i = 0; i < 100; i++) {
       shear(p, 0.003);
       const double e = value(p, "eplastic");
-      if (e > 0.0) EXPECT_NEAR(p.vonmises() / GTN.y(e), 1.0, 1e-8);
+      if (e > 0.0) EXPECT_NEAR(p.vonmises() / GTN.y(e), 1.0, 4e-9);
     }
-    EXPECT_NEAR(value(p, "eplastic"), 0.3 - p.vonmises() / (3 * 2e11 / 2.6), 2e-3);
-    EXPECT_LT(value(p, "porosity"), 1e-9);
+    EXPECT_NEAR(value(p, "eplastic"), 0.3 - p.vonmises() / (3 * 2e11 / 2.6), 4e-4);
+    EXPECT_LT(value(p, "porosity"), 1e-10);
   }
 }
 
@@ -619,15 +619,15 @@ TEST(GursonLaw, ShearOfClosedVoids)
           move_to(p, isotropic(std::exp(-(squeeze + 1.5 * f0) * i / n / 3)));
         const std::string where = joined(f0, " squeezed by ", squeeze, " in ", n);
         EXPECT_GT(p.pressure(), 20 * 4e8) << where;
-        EXPECT_LT(value(p, "porosity"), 1e-6) << where;
+        EXPECT_LT(value(p, "porosity"), 1e-11) << where;
         for (int i = 0; i < 20; i++) shear(p, 0.003);
         const double e = value(p, "eplastic"), elastic = p.batch.J[0] * p.vonmises() / G3;
-        EXPECT_NEAR(p.vonmises() / GTN.y(e), 1.0, 1e-6) << where;
+        EXPECT_NEAR(p.vonmises() / GTN.y(e), 1.0, 2e-9) << where;
         for (int i = 0; i < 20; i++) shear(p, 0.003);
-        EXPECT_NEAR(p.vonmises() / GTN.y(value(p, "eplastic")), 1.0, 1e-6) << where;
+        EXPECT_NEAR(p.vonmises() / GTN.y(value(p, "eplastic")), 1.0, 2e-9) << where;
         // what is not elastic; directions of a simple shear turn a little
         const double more = p.batch.J[0] * p.vonmises() / G3 - elastic;
-        EXPECT_NEAR(value(p, "eplastic") - e + more, 0.06, 1e-4) << where;
+        EXPECT_NEAR(value(p, "eplastic") - e + more, 0.06, 3e-7) << where;
       }
 }
 
@@ -644,10 +644,10 @@ TEST(GursonLaw, CompactionAndWork)
     matrix += p.batch.J[0] * (1 - 0.5 * (f + f1)) * 0.5 * (GTN.y(e) + GTN.y(e1)) * (e1 - e);
     EXPECT_LE(f1, f);
   }
-  EXPECT_LT(value(p, "porosity"), 1e-3);
+  EXPECT_LT(value(p, "porosity"), 1e-9);
   EXPECT_GT(p.pressure(), 10 * 4e8);
   EXPECT_NEAR(matrix, p.work[PLASTIC], 2e-3 * matrix);
-  EXPECT_NEAR(p.power, accounted(p), 1e-4 * p.power);
+  EXPECT_NEAR(p.power, accounted(p), 3e-8 * p.power);
 }
 
 /* ---------------------------------------------------------------------- robustness */

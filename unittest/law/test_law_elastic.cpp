@@ -226,20 +226,20 @@ TEST(Hyperelastic, UniaxialStress)
     Point p("density 1000 " + law.text);
     stretch_freely(p, 1 + 1e-5);
     EXPECT_NEAR(p.stress(0) / 1e-5, law.E, 1e-4 * law.E);
-    EXPECT_NEAR((1 - p.batch.F[4][0]) / 1e-5, law.nu, 1e-4);
+    EXPECT_NEAR((1 - p.batch.F[4][0]) / 1e-5, law.nu, 2e-5);
   }
   for (const double l : {0.8, 1.5, 3.0}) {
     Point h("density 1000 hencky 1e6 0.3");
     stretch_freely(h, l);
     const double J = std::pow(l, 1 - 2 * NU0);
-    EXPECT_NEAR(h.stress(0), E0 * std::log(l) / J, 1e-9 * E0);
-    EXPECT_NEAR(h.batch.J[0], J, 1e-9);
+    EXPECT_NEAR(h.stress(0), E0 * std::log(l) / J, 1e-12 * E0);
+    EXPECT_NEAR(h.batch.J[0], J, 1e-11);
     if (l < 2) {    // then the lateral stretch is 0
       Point k("density 1000 stvenant/kirchhoff 1e6 0.3");
       stretch_freely(k, l);
       const double side2 = 1 - NU0 * (l * l - 1);
-      EXPECT_NEAR(k.batch.F[4][0], std::sqrt(side2), 1e-9);
-      EXPECT_NEAR(k.stress(0), l * E0 * 0.5 * (l * l - 1) / side2, 1e-8 * E0);
+      EXPECT_NEAR(k.batch.F[4][0], std::sqrt(side2), 1e-11);
+      EXPECT_NEAR(k.stress(0), l * E0 * 0.5 * (l * l - 1) / side2, 1e-11 * E0);
     }
     // nearly incompressible: the difference to the incompressible solid is of order G/K
     const double nu = 0.4999, E = 1.2e6, G = E / (2 * (1 + nu)), small = 3 * (1 - 2 * nu);
@@ -269,14 +269,14 @@ TEST(Hyperelastic, NeoHookeanLargeStretch)
   const auto material = material_of("neohookean 1e6 0.3");
   MaterialPoint p(*material);
   move_to(p, uniaxial_stretch(11));
-  EXPECT_NEAR(p.stress(0), 4.321568e6, 1.0);
+  EXPECT_NEAR(p.stress(0), 4.321568e6, 0.4);
   EXPECT_NEAR(p.stress(0), (MU * (11 * 11 - 1) + LAMBDA * std::log(11)) / 11, 1e-12 * p.stress(0));
   for (const auto &[stretch, nominal] :
        {std::pair{2, 6.467447e5}, {5, 1.898798e6}, {11, 4.225202e6}}) {
     MaterialPoint q(*material);
     stretch_freely(q, stretch);
     const double side = q.batch.F[4][0];
-    EXPECT_NEAR(q.stress(1), 0.0, 1e-5);
+    EXPECT_NEAR(q.stress(1), 0.0, 1e-8);
     EXPECT_NEAR(q.stress(0) * side * side, nominal, 1e-6 * nominal);
     if (stretch < 11) continue;
     EXPECT_NEAR(side, 0.399041, 1e-6);
@@ -367,7 +367,7 @@ TEST(Hyperelastic, ClosedCycle)
       largest = std::max(largest, p.stored_energy());
     }
     EXPECT_NEAR(work, 0.0, 1e-10 * largest);
-    EXPECT_NEAR(p.power, 0.0, 1e-5 * largest);    // second order
+    EXPECT_NEAR(p.power, 0.0, 2e-6 * largest);    // second order
     EXPECT_NEAR(p.stored_energy(), 0.0, 1e-10 * largest);
   }
 }
@@ -403,7 +403,7 @@ TEST(Hyperelastic, Objectivity)
     expect_objective(*material_of(text), shear, 30.0, 1e-11,
                      [](const MaterialPoint &plain, const MaterialPoint &turned) {
                        const double c = plain.wave_speed();
-                       EXPECT_NEAR(turned.wave_speed(), c, 1e-7 * c);
+                       EXPECT_NEAR(turned.wave_speed(), c, 1e-11 * c);
                      });
   }
 }
@@ -535,10 +535,10 @@ TEST(Anisotropic, EngineeringConstants)
   EXPECT_NEAR(-S(1, 0) * E1, nu12, 1e-6);
   EXPECT_NEAR(-S(2, 0) * E1, nu13, 1e-6);
   EXPECT_NEAR(-S(2, 1) * E2, nu23, 1e-6);
-  EXPECT_NEAR(S(3, 3) * 0.7e9, 1.0, 1e-6);
-  EXPECT_NEAR(S(4, 4) * 0.65e9, 1.0, 1e-6);
-  EXPECT_NEAR(S(5, 5) * 0.05e9, 1.0, 1e-6);
-  EXPECT_LT((S - S.transpose()).norm(), 1e-6 * S.norm());
+  EXPECT_NEAR(S(3, 3) * 0.7e9, 1.0, 1e-12);
+  EXPECT_NEAR(S(4, 4) * 0.65e9, 1.0, 1e-12);
+  EXPECT_NEAR(S(5, 5) * 0.05e9, 1.0, 1e-11);
+  EXPECT_LT((S - S.transpose()).norm(), 3e-7 * S.norm());
 }
 
 // a ply at an angle (R.M. Jones, Mechanics of Composite Materials, 1975, eq. 2.97)
@@ -556,7 +556,7 @@ TEST(Anisotropic, OffAxisModulus)
           "orthotropic " + constants + " axes " + direction + " 0 0 0 1",
           "transversely/isotropic 126e9 11e9 0.28 0.4 6.6e9 axis " + direction + " 0"}) {
       const Eigen::Matrix<double, 6, 6> S = stiffness(*material_of(text)).inverse();
-      EXPECT_NEAR(1 / S(0, 0), expected, 2e-5 * expected) << text;
+      EXPECT_NEAR(1 / S(0, 0), expected, 4e-6 * expected) << text;
     }
   }
 }
@@ -602,14 +602,14 @@ TEST(Anisotropic, WavesAlongTheAxes)
   const double GT = 11e9 / 2.8;
   // C11 = EA (1 - NUT) / (1 - NUT - 2 NUA^2 ET/EA)
   const double C11 = 126e9 * 0.6 / (0.6 - 2 * 0.28 * 0.28 * 11.0 / 126);
-  EXPECT_NEAR(C(0, 0), C11, 1e-5 * C11);
-  EXPECT_NEAR(C(3, 3), 6.6e9, 1e-5 * 6.6e9);
-  EXPECT_NEAR(C(4, 4), 6.6e9, 1e-5 * 6.6e9);
-  EXPECT_NEAR(C(5, 5), GT, 1e-5 * GT);
-  EXPECT_NEAR(C(1, 1) - C(1, 2), 2 * GT, 1e-4 * GT);
+  EXPECT_NEAR(C(0, 0), C11, 1e-6 * C11);
+  EXPECT_NEAR(C(3, 3), 6.6e9, 1e-12 * 6.6e9);
+  EXPECT_NEAR(C(4, 4), 6.6e9, 1e-12 * 6.6e9);
+  EXPECT_NEAR(C(5, 5), GT, 1e-12 * GT);
+  EXPECT_NEAR(C(1, 1) - C(1, 2), 2 * GT, 4e-6 * GT);
   MaterialPoint p(*material);
-  EXPECT_NEAR(p.wave_speed(), std::sqrt(C11 / 1600), 1e-9 * p.wave_speed());
-  EXPECT_NEAR(fastest_wave(p), std::sqrt(C11 / 1600), 1e-5 * p.wave_speed());
+  EXPECT_NEAR(p.wave_speed(), std::sqrt(C11 / 1600), 1e-12 * p.wave_speed());
+  EXPECT_NEAR(fastest_wave(p), std::sqrt(C11 / 1600), 1e-9 * p.wave_speed());
 }
 
 // woven yarns, however taut, slack, or sheared, and with any angle between them: stress is the

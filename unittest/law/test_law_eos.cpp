@@ -29,7 +29,7 @@ TEST(Shock, SymmetricImpactStates)
       EXPECT_NEAR(p.history(0) / m[0], 0.5 * u * u, 1e-11 * u * u);
       EXPECT_NEAR(p.power, p.history(0), 1e-10 * p.power);
       if (u < 0.5 * m[4]) continue;
-      EXPECT_NEAR(p.pressure() / GPa, m[5], 1e-7 * m[5]);
+      EXPECT_NEAR(p.pressure() / GPa, m[5], 2e-8 * m[5]);
       EXPECT_NEAR(1.0 / p.batch.J[0], m[6], 1e-8 * m[6]);
     }
   }
@@ -58,10 +58,10 @@ TEST(Shock, Isentrope)
   // and back: the body returns all of the work
   MaterialPoint p(*material);
   compress(p, 0.7, 4000);
-  EXPECT_NEAR(p.stored_energy(), p.power, 1e-6 * p.power);
+  EXPECT_NEAR(p.stored_energy(), p.power, 1e-11 * p.power);
   compress(p, 1.0, 4000);
-  EXPECT_NEAR(p.pressure(), 0.0, 1e-6 * hugoniot.pressure());
-  EXPECT_NEAR(p.stored_energy(), 0.0, 1e-6 * hugoniot.stored_energy());
+  EXPECT_NEAR(p.pressure(), 0.0, 1e-12 * hugoniot.pressure());
+  EXPECT_NEAR(p.stored_energy(), 0.0, 1e-11 * hugoniot.stored_energy());
 }
 
 TEST(Shock, CutoffHoldsThePressureAndDoesItsWork)
@@ -71,13 +71,13 @@ TEST(Shock, CutoffHoldsThePressureAndDoesItsWork)
   compress(p, 1.1, 1000);
   EXPECT_DOUBLE_EQ(p.pressure(), pmin);
   const double open = p.history(0);
-  EXPECT_NEAR(open, p.power, 1e-9 * p.power);
+  EXPECT_NEAR(open, p.power, 1e-12 * p.power);
   // pmin * (volume opened at pmin) and the elastic part
   const double K = 8930.0 * 3940 * 3940, Jc = 1.0 / (1.0 - 1e9 / K);
-  EXPECT_NEAR(open, 1e9 * (1.1 - Jc) + 1e9 * (Jc - 1) / 2, 2e-2 * open);
+  EXPECT_NEAR(open, 1e9 * (1.1 - Jc) + 1e9 * (Jc - 1) / 2, 3e-4 * open);
   compress(p, 1.0, 1000);
-  EXPECT_NEAR(p.history(0), 0.0, 1e-3 * open);
-  EXPECT_NEAR(p.history(0), p.power, 1e-9 * open);
+  EXPECT_NEAR(p.history(0), 0.0, 1e-12 * open);
+  EXPECT_NEAR(p.history(0), p.power, 1e-12 * open);
   EXPECT_GT(p.wave_speed(), 3900.0);
 }
 
@@ -92,14 +92,14 @@ TEST(Shock, SpallBreaksOnceAndForAll)
   compress(p, 1.02, 300);
   EXPECT_EQ(p.history(2), 1.0);
   EXPECT_DOUBLE_EQ(p.pressure(), 0.0);
-  EXPECT_NEAR(p.history(0), p.power, 1e-9 * p.power);
+  EXPECT_NEAR(p.history(0), p.power, 1e-11 * p.power);
   EXPECT_GT(p.wave_speed(), 3900.0);    // ready to close
   // closes without tension, and bears pressure again; the elastic energy has become heat
   compress(p, 1.003, 300);
   EXPECT_DOUBLE_EQ(p.pressure(), 0.0);
   compress(p, 0.99, 1000);
   EXPECT_GT(p.pressure(), 1.3e9);
-  EXPECT_NEAR(p.history(0), p.power, 1e-9 * p.power);
+  EXPECT_NEAR(p.history(0), p.power, 1e-11 * p.power);
   compress(p, 1.005, 1000);
   EXPECT_DOUBLE_EQ(p.pressure(), 0.0);
 }
@@ -167,7 +167,7 @@ TEST(IdealGas, ViscousHeatIsKept)
     EXPECT_NEAR(p.history(1), p.work[VISCOUS], 1e-10 * p.work[VISCOUS]);
     return p.history(0) / E - 1;
   });
-  EXPECT_LT(std::fabs(error[1]), 1e-5);
+  EXPECT_LT(std::fabs(error[1]), 1e-6);
   expect_order(error, 2.0, 0.05);
 }
 
@@ -199,7 +199,7 @@ TEST(Tait, CavitatesAtTheLimit)
   for (const double share : {0.5, 0.99, 1.01, 1.5, 3.0}) {
     const double J = std::pow(1 + gamma * share * limit / K, -1 / gamma);
     move_to(p, isotropic(std::cbrt(J)));
-    EXPECT_NEAR(p.pressure(), std::max(share * limit, limit), 1e-6 * std::fabs(limit)) << share;
+    EXPECT_NEAR(p.pressure(), std::max(share * limit, limit), 1e-10 * std::fabs(limit)) << share;
   }
 }
 
@@ -211,14 +211,14 @@ TEST(StiffenedGas, Cavitates)
   compress(p, 1.2, 2000);
   EXPECT_DOUBLE_EQ(p.pressure(), -1e6);
   EXPECT_NEAR(p.stored_energy() - start, 1e6 * 0.2, 2e-3 * 1e6);
-  EXPECT_NEAR(p.stored_energy() - start, p.power, 1e-3 * p.power);
-  EXPECT_NEAR(p.wave_speed(), std::sqrt(4.4 * (6e8 - 1e6) * 1.2 / 1000), 1e-6);
+  EXPECT_NEAR(p.stored_energy() - start, p.power, 2e-7 * p.power);
+  EXPECT_NEAR(p.wave_speed(), std::sqrt(4.4 * (6e8 - 1e6) * 1.2 / 1000), 1e-8);
   compress(p, 1.0, 2000);
-  EXPECT_NEAR(p.pressure(), 1e5, 2e3);
+  EXPECT_NEAR(p.pressure(), 1e5, 200.0);
   // in one large step the mean of both pressures does the work
   MaterialPoint once(*material);
   compress(once, 1.2, 1);
-  EXPECT_NEAR(once.stored_energy() - start, 0.5 * (1e6 - 1e5) * 0.2, 1e-3);
+  EXPECT_NEAR(once.stored_energy() - start, 0.5 * (1e6 - 1e5) * 0.2, 1e-7);
 }
 
 TEST(Polynomial, PressureIsTheFormula)
@@ -272,10 +272,10 @@ TEST(JWL, IsentropeOfTheProducts)
     EXPECT_NEAR(p.pressure(), isentrope(1.0), 1e-3);
     compress(p, 0.5, n);
     compress(p, 8.0, 10 * n);
-    EXPECT_NEAR(p.stored_energy() - E0, p.power, 1e-9 * E0);
+    EXPECT_NEAR(p.stored_energy() - E0, p.power, 1e-12 * E0);
     return p.pressure() / isentrope(8.0) - 1;
   });
-  EXPECT_LT(std::fabs(error[1]), 1e-3);
+  EXPECT_LT(std::fabs(error[1]), 5e-5);
   expect_order(error, 2.0, 0.1);
 }
 
@@ -322,7 +322,7 @@ TEST(JWL, BurnsOnTime)
           h);    // at the origin: 10 us from the first, 8 us from the second
   EXPECT_NEAR(p.history(3), 8e-6, 1e-15);
   EXPECT_EQ(p.pressure(), 0.0);
-  EXPECT_NEAR(p.wave_speed(), D, 1e-9 * D);
+  EXPECT_NEAR(p.wave_speed(), D, 1e-12 * D);
   const double dt = 1e-8;
   const auto burnt = make(TNT);
   const double whole = MaterialPoint(*burnt).pressure();
@@ -330,12 +330,12 @@ TEST(JWL, BurnsOnTime)
   for (int i = 1; i <= 1000; i++) {
     move_to(p, IDENTITY, dt);
     const double f = std::min(std::max((i * dt - 8e-6) * D / (width * h), 0.0), 1.0);
-    EXPECT_NEAR(p.history(2), f, 1e-9);
-    EXPECT_NEAR(p.pressure(), f * whole, 1e-9 * whole);
+    EXPECT_NEAR(p.history(2), f, 1e-11);
+    EXPECT_NEAR(p.pressure(), f * whole, 1e-11 * whole);
     largest = std::max(largest, p.pressure());
     EXPECT_DOUBLE_EQ(p.stored_energy(), E0);    // nothing gained or lost at constant volume
   }
-  EXPECT_NEAR(largest, whole, 1e-9 * whole);
+  EXPECT_NEAR(largest, whole, 1e-12 * whole);
 }
 
 TEST(JWL, EnergyIsReleasedOnce)
@@ -344,13 +344,13 @@ TEST(JWL, EnergyIsReleasedOnce)
   // burns while it is squeezed, then expands by 1000: all of E0 has become work
   compress(p, 0.75, 200, 5e-7 / 200);
   EXPECT_EQ(p.history(2), 1.0);
-  EXPECT_NEAR(p.stored_energy() - E0, p.power, 1e-9 * E0);
+  EXPECT_NEAR(p.stored_energy() - E0, p.power, 1e-12 * E0);
   double stretch = 0.75;
   for (int i = 0; i < 4000; i++) {
     stretch *= std::pow(1000.0 / 0.75, 1.0 / 4000);
     move_to(p, uniaxial_stretch(stretch), 1e-9);
   }
-  EXPECT_NEAR(p.stored_energy() - E0, p.power, 1e-9 * E0);
+  EXPECT_NEAR(p.stored_energy() - E0, p.power, 1e-11 * E0);
   EXPECT_GT(p.stored_energy(), 0.0);
   EXPECT_LT(p.stored_energy(), 0.15 * E0);
 }
@@ -379,7 +379,7 @@ TEST(EveryEos, WaveSpeedIsTheSlopeOfTheIsentrope)
       compress(less, J - d, 1);
       compress(more, J + d, 1);
       const double slope = -J * J * (more.pressure() - less.pressure()) / (2 * d);
-      EXPECT_NEAR(p.wave_speed(), std::sqrt(slope / material->density()), 1e-5 * p.wave_speed())
+      EXPECT_NEAR(p.wave_speed(), std::sqrt(slope / material->density()), 5e-9 * p.wave_speed())
           << "J " << J;
     }
   }
@@ -408,7 +408,7 @@ TEST(EveryEos, EnergyIsTheWorkOfThePressure)
     }
     EXPECT_LT(work[1], 1e-4);
     EXPECT_LT(work[1], 0.3 * work[0] + 1e-12);
-    EXPECT_LT(cycle[1], 1e-5);
+    EXPECT_LT(cycle[1], 1e-12);
     EXPECT_LT(cycle[1], 0.3 * cycle[0] + 1e-12);
   }
 }

@@ -190,14 +190,15 @@ TEST(DruckerPrager, TriaxialCompression)
       EXPECT_EQ(value(p, "eplastic"), 0.0);
       for (int i = 0; i < 40; i++) step_lateral(p, -1e-3, -confining, 1.0);
       const double J = p.batch.J[0];
-      EXPECT_NEAR(-p.stress(0), N * confining + 2 * c / J * std::sqrt(N), 1e-9 * N * confining);
+      EXPECT_NEAR(-p.stress(0), N * confining + 2 * c / J * std::sqrt(N), 1e-11 * N * confining);
       const double e0 = value(p, "eplastic"), t = std::sin(psi * DEG);
       const auto plastic_volume = [&]() {
         return std::log(p.batch.J[0]) + pressure(p) * 3 * 0.5 / 5e7;
       };
       const double before = plastic_volume();
       step_lateral(p, -1e-3, -confining, 1.0);
-      EXPECT_NEAR((plastic_volume() - before) / (value(p, "eplastic") - e0), 6 * t / (3 - t), 1e-9);
+      EXPECT_NEAR((plastic_volume() - before) / (value(p, "eplastic") - e0), 6 * t / (3 - t),
+                  1e-11);
       EXPECT_EQ(value(p, "gap"), 0.0);
     }
 }
@@ -237,11 +238,11 @@ TEST(DruckerPrager, SeparatedSandDoesNotGainVolume)
     const int k = std::min(i, 40 - i);
     const double F = 1 + a * k / 20;
     move_to(p, {F, 0.3 * k / 20, 0, 0, F, 0, 0, 0, F});
-    EXPECT_NEAR(p.vonmises() + std::fabs(p.pressure()), 0.0, 1e-6);
+    EXPECT_NEAR(p.vonmises() + std::fabs(p.pressure()), 0.0, 1e-9);
     if (i <= 20) EXPECT_NEAR(value(p, "gap"), 3 * std::log(F), 1e-12);
   }
   for (const double F : {1.001, 0.998}) move_to(p, isotropic(F));
-  EXPECT_NEAR(pressure(p), -3 * K * std::log(0.998), 1e-9 * K);
+  EXPECT_NEAR(pressure(p), -3 * K * std::log(0.998), 1e-12 * K);
   EXPECT_NEAR(value(p, "gap"), 0.0, 1e-15);
   EXPECT_NEAR(p.work[PLASTIC], 0.0, 1e-7 * K);
 }
@@ -257,13 +258,13 @@ TEST(DruckerPrager, Tension)
   for (const auto &k : cases) {
     Point p(std::string("density 1600 drucker/prager 1e7 0.3 35 cohesion 2e4") + k.text);
     for (int i = 1; i <= 100; i++) move_to(p, isotropic(1 + 1e-3 * i));
-    EXPECT_NEAR(-pressure(p), k.limit, 1e-9 * k.limit) << k.text;
+    EXPECT_NEAR(-pressure(p), k.limit, 1e-12 * k.limit) << k.text;
     const double gap = value(p, "gap"), K = 1e7 / 1.2;
     EXPECT_NEAR(gap, 3 * std::log(1.1) - k.limit / K, 1e-12);
     EXPECT_NEAR(p.work[PLASTIC], k.limit * gap, 0.01 * k.limit * gap);
     const double work = p.work[PLASTIC];
     for (int i = 99; i >= 0; i--) move_to(p, isotropic(1 + 1e-3 * i));
-    EXPECT_NEAR(p.work[PLASTIC], work, 1e-9 * work);
+    EXPECT_NEAR(p.work[PLASTIC], work, 1e-12 * work);
     EXPECT_NEAR(p.pressure(), 0.0, 1e-6);
   }
 }
@@ -314,8 +315,8 @@ TEST(DruckerPrager, DilationOutOfTensionIsAReturnToTheCone)
   const double D = (q + M * K * v - k) / (3 * G + K * M * flow);
   EXPECT_GT(K * v, 1e4);    // beyond, and back
   EXPECT_LT(K * (v - flow * D), 1e4);
-  EXPECT_NEAR(pressure(p), K * (flow * D - v), 1e-8 * q);
-  EXPECT_NEAR(shear(p), q - 3 * G * D, 1e-8 * q);
+  EXPECT_NEAR(pressure(p), K * (flow * D - v), 1e-12 * q);
+  EXPECT_NEAR(shear(p), q - 3 * G * D, 1e-12 * q);
 }
 
 // exact on straight paths; of first order where the direction of flow turns
@@ -466,7 +467,7 @@ TEST(MohrCoulomb, Softening)
     peak = std::max(peak, -p.stress(0));
   }
   const double residual = N * 1e5 + 2 * 5e3 / p.batch.J[0] * std::sqrt(N);
-  EXPECT_NEAR(-p.stress(0), residual, 1e-3 * residual);
+  EXPECT_NEAR(-p.stress(0), residual, 2e-4 * residual);
   EXPECT_GT(peak, 1.2 * residual);
 }
 
@@ -476,14 +477,14 @@ TEST(MohrCoulomb, SeparatedPartsCloseWithoutPressure)
   const double K = 1e6 / (3 * 0.4), tip = 1e4 / std::tan(30 * DEG);
   Point p("density 1900 mohr/coulomb 1e6 0.3 30 1e4");
   move_to(p, isotropic(1.05));
-  EXPECT_NEAR(pressure(p), -tip, 1e-9 * tip);
+  EXPECT_NEAR(pressure(p), -tip, 1e-12 * tip);
   const double gap = 3 * std::log(1.05) - tip / K;
   EXPECT_NEAR(value(p, "gap"), gap, 1e-12);
   move_to(p, isotropic(1.02));
-  EXPECT_NEAR(pressure(p), 0.0, 1e-9 * tip);
+  EXPECT_NEAR(pressure(p), 0.0, 1e-12 * tip);
   EXPECT_NEAR(value(p, "gap"), 3 * std::log(1.02), 1e-12);
   move_to(p, isotropic(0.99));
-  EXPECT_NEAR(pressure(p), -3 * K * std::log(0.99), 1e-9 * tip);
+  EXPECT_NEAR(pressure(p), -3 * K * std::log(0.99), 1e-11 * tip);
   EXPECT_NEAR(value(p, "gap"), 0.0, 1e-12);
 }
 
@@ -499,12 +500,12 @@ TEST(MohrCoulomb, SofteningToNothing)
       for (int i = 0; i < 40; i++)    // until nothing is left, then on
         for (const double size : {80.0 / rate + 0.02, strain}) {
           moves(p, {0, i % 2 ? size : -size, 0, 0, 0, 0, 0, 0, 0}, 1.0);
-          EXPECT_NEAR(pressure(p), -3 * K * std::log(0.999), 1e-9 * K);
+          EXPECT_NEAR(pressure(p), -3 * K * std::log(0.999), 1e-12 * K);
         }
-      EXPECT_LT(p.vonmises(), 1e-9 * G);
+      EXPECT_LT(p.vonmises(), 1e-12 * G);
       moves(p, isotropic(0.002), 1.0);
-      EXPECT_NEAR(pressure(p), 0.0, 1e-9 * K);
-      EXPECT_NEAR(value(p, "gap"), 3 * std::log(0.999 * 1.002), 1e-9);
+      EXPECT_NEAR(pressure(p), 0.0, 1e-12 * K);
+      EXPECT_NEAR(value(p, "gap"), 3 * std::log(0.999 * 1.002), 1e-13);
     }
 }
 
@@ -519,7 +520,7 @@ TEST(CamClay, IsotropicCompressionAndSwelling)
     EXPECT_LT(p.vonmises(), 1e-6 * p.pressure());
   };
   const auto expect_pressure = [&](double exact) {
-    EXPECT_NEAR(pressure(p), exact, 1e-9 * exact);
+    EXPECT_NEAR(pressure(p), exact, 1e-11 * exact);
   };
   squeeze(std::pow(1.5, -CC_KAPPA));
   expect_pressure(1.5e5);
@@ -527,7 +528,7 @@ TEST(CamClay, IsotropicCompressionAndSwelling)
   for (const double factor : {1.01, 1.5, 4.0}) {    // on the normal compression line
     squeeze(J1 * std::pow(factor, -CC_LAMBDA));
     expect_pressure(2e5 * factor);
-    EXPECT_NEAR(value(p, "preconsolidation"), 2e5 * factor, 1e-4);
+    EXPECT_NEAR(value(p, "preconsolidation"), 2e5 * factor, 1e-6);
   }
   squeeze(J1 * std::pow(4.0, -CC_LAMBDA) * std::pow(4.0, CC_KAPPA));
   expect_pressure(2e5);
@@ -547,8 +548,8 @@ TEST(CamClay, UndrainedStrength)
     Point p(clay + std::to_string(1e5 * ocr));
     shorten(p, 1e-4, 4000);
     const double exact = 1e5 * std::pow(ocr / 2, 1 - CC_KAPPA / CC_LAMBDA);
-    EXPECT_NEAR(p.pressure(), exact, 2e-4 * exact) << ocr;
-    EXPECT_NEAR(p.vonmises(), CC_M * exact, 2e-4 * exact) << ocr;
+    EXPECT_NEAR(p.pressure(), exact, 8e-8 * exact) << ocr;
+    EXPECT_NEAR(p.vonmises(), CC_M * exact, 2e-8 * exact) << ocr;
   }
 }
 
@@ -587,7 +588,7 @@ TEST(CamClay, PathsFollowTheRateEquations)
       return std::fabs(pressure(p) / exact[0] - 1) + std::fabs(shear(p) / exact[1] - 1) +
           std::fabs(value(p, "preconsolidation") / exact[2] - 1);
     });
-    EXPECT_LT(error[2], 5e-3);
+    EXPECT_LT(error[2], 3e-4);
     expect_order(error, 1.0, 0.25);
   }
 }
@@ -600,10 +601,10 @@ TEST(CamClay, DrainedTriaxialReachesCriticalState)
     steps(p, {}, 1.0);
     EXPECT_NEAR(p.pressure(), 1e5, 1e-6);
     for (int i = 0; i < 600; i++) step_lateral(p, -2e-3, -1e5, 1.0);
-    EXPECT_NEAR(p.vonmises() / p.pressure(), CC_M, 1e-3 * CC_M) << ocr;
+    EXPECT_NEAR(p.vonmises() / p.pressure(), CC_M, 2e-4 * CC_M) << ocr;
     const double J = p.batch.J[0];
     step_lateral(p, -2e-3, -1e5, 1.0);
-    EXPECT_NEAR(p.batch.J[0], J, 2e-6) << ocr;
+    EXPECT_NEAR(p.batch.J[0], J, 6e-7) << ocr;
     EXPECT_GT(ocr > 2.0 ? J - 1.0 : 1.0 - J, 0.01) << ocr;    // dilates or contracts
   }
 }
@@ -653,7 +654,7 @@ TEST(CriticalState, ReturnIsOnTheSurfaceAndAssociated)
           const double normal_p = k.M * k.M * (2 * pr - (1 - k.beta) * p0),
                        normal_q = 2 * q * (1 + 2 * k.beta);
           const double length = std::hypot(normal_p, normal_q), flow = std::hypot(x, D);
-          EXPECT_NEAR(x * normal_q - D * normal_p, 0.0, 1e-6 * length * flow)
+          EXPECT_NEAR(x * normal_q - D * normal_p, 0.0, 8e-9 * length * flow)
               << "scale " << scale << " p/p0 " << pr / p0;
           EXPECT_GE(x * normal_p + D * normal_q, 0.0);
           (normal_p > 0 ? wet : dry)++;
@@ -676,15 +677,15 @@ TEST(Nacc, BreaksInTension)
     if (3e-4 * i * K < 0.299 * p0) EXPECT_EQ(value(p, "alpha"), -0.05);
   }
   EXPECT_NEAR(strongest, 0.3 * p0, 0.01 * p0);
-  EXPECT_NEAR(pressure(p), 0.0, 1e-9 * K);
+  EXPECT_NEAR(pressure(p), 0.0, 1e-12 * K);
   EXPECT_NEAR(value(p, "alpha"), 0.6 - 0.05, 1e-12);
   move_to(p, isotropic(std::exp(0.2 - 0.5 / 3)));
-  EXPECT_NEAR(pressure(p), 0.0, 1e-9 * K);
+  EXPECT_NEAR(pressure(p), 0.0, 1e-12 * K);
   EXPECT_NEAR(value(p, "alpha"), 0.05, 1e-12);
   // beyond the volume at which it has no strength
   move_to(p, isotropic(std::exp(-0.02)));
   EXPECT_GT(pressure(p), 1e-3 * K);
-  EXPECT_NEAR(pressure(p), K * std::sinh(3 * -value(p, "alpha")), 1e-9 * K);
+  EXPECT_NEAR(pressure(p), K * std::sinh(3 * -value(p, "alpha")), 1e-13 * K);
 }
 
 TEST(MuI, SteadyShear)
@@ -702,9 +703,9 @@ TEST(MuI, SteadyShear)
     steps(p, {0, rate, 0, 0, 0, 0, 0, 0, 0}, 1e-3 / std::fabs(rate), 4000);
     const double t = p.vonmises() / std::sqrt(3.0), pr = p.pressure();
     const double I = std::fabs(rate) * d / std::sqrt(pr / density);
-    EXPECT_NEAR(t / pr, mus + (mu2 - mus) * I / (I0 + I), 2e-5) << rate;
-    EXPECT_NEAR(value(p, "inertial"), I, 2e-4 * I);
-    EXPECT_NEAR(pr, 500.0, 1e-6);
+    EXPECT_NEAR(t / pr, mus + (mu2 - mus) * I / (I0 + I), 3e-6) << rate;
+    EXPECT_NEAR(value(p, "inertial"), I, 5e-6 * I);
+    EXPECT_NEAR(pr, 500.0, 1e-8);
     EXPECT_GT(std::fabs(p.stress(3)), 0.99 * t);    // and nearly all of it in the shear plane
   }
 }
@@ -720,9 +721,9 @@ TEST(MuI, OtherUnits)
   moves(p, A, 1e-5, 500);
   moves(q, A, 1e-2, 500);
   EXPECT_GT(value(p, "inertial"), 0.05);
-  EXPECT_NEAR(value(q, "inertial"), value(p, "inertial"), 1e-9);
-  EXPECT_NEAR(1e6 * q.stress(3), p.stress(3), 1e-9 * p.stress(3));
-  EXPECT_NEAR(q.wave_speed(), p.wave_speed(), 1e-9 * p.wave_speed());
+  EXPECT_NEAR(value(q, "inertial"), value(p, "inertial"), 1e-13);
+  EXPECT_NEAR(1e6 * q.stress(3), p.stress(3), 1e-12 * p.stress(3));
+  EXPECT_NEAR(q.wave_speed(), p.wave_speed(), 1e-12 * p.wave_speed());
 }
 
 TEST(Snow, HardensInCompressionAndFallsApartInTension)
@@ -750,7 +751,7 @@ TEST(Snow, HardensInCompressionAndFallsApartInTension)
   MaterialPoint p(*material);
   compress(p, 0.7, 3000);
   EXPECT_GT(p.stored_energy(), 0.1 * p.power);
-  EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], p.power, 1e-4 * p.power);
+  EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], p.power, 3e-7 * p.power);
 }
 
 // first order in the step where the flow turns, for all laws
@@ -790,8 +791,8 @@ TEST(SoilFiles, GiveThePublishedStrength)
     return p.stress(0) * p.batch.J[0];
   };
   EXPECT_NEAR(uniaxial("Concrete_C30_MC", -0.005), -38 * MPa, 0.01 * MPa);
-  EXPECT_NEAR(uniaxial("Concrete_C30_MC", 0.001), 2.9 * MPa, 0.01 * MPa);
-  EXPECT_NEAR(uniaxial("Sandstone_Berea_MC", -0.02), -90.18 * MPa, 0.02 * MPa);
+  EXPECT_NEAR(uniaxial("Concrete_C30_MC", 0.001), 2.9 * MPa, 0.002 * MPa);
+  EXPECT_NEAR(uniaxial("Sandstone_Berea_MC", -0.02), -90.18 * MPa, 6e-4 * MPa);
 
   // undrained strength ratio q/(2 p0) = M/2 (1/2)^(1 - kappa/lambda) of normally consolidated clay
   struct {
@@ -802,13 +803,13 @@ TEST(SoilFiles, GiveThePublishedStrength)
     Point p(definition(k.name));
     shorten(p, 1e-3, 600);
     const double q = k.M * 1e5 * std::pow(0.5, 1 - k.kappa / k.lambda);
-    EXPECT_NEAR(p.vonmises(), q, 2e-3 * q) << k.name;
+    EXPECT_NEAR(p.vonmises(), q, 1e-11 * q) << k.name;
   }
 
   Point p(definition("Sand_dry_DP"));
   consolidate(p, 1e3);
   for (int i = 0; i < 40; i++) step_lateral(p, -1e-3, -1e3, 1.0);
-  EXPECT_NEAR(-p.stress(0), 1e3 * std::pow(std::tan((45 + 35 / 2.0) * DEG), 2), 1e-3);
+  EXPECT_NEAR(-p.stress(0), 1e3 * std::pow(std::tan((45 + 35 / 2.0) * DEG), 2), 1e-8);
 }
 
 TEST(SoilLaws, BadDefinitionsAreRefused)

@@ -90,13 +90,13 @@ TEST(J2Hardening, StraightPath)
       shear(one, strain, 1.0);
       shear(many, strain, 1.0, 2000);
       const double e = one.history(0), Y = h.Y(e);
-      EXPECT_NEAR(e, strain - Y / (3 * G), 1e-10 * strain);
+      EXPECT_NEAR(e, strain - Y / (3 * G), 1e-12 * strain);
       EXPECT_NEAR(shear_stress(one), Y, 1e-10 * Y);
-      EXPECT_NEAR(shear_stress(many), Y, 1e-9 * Y);
+      EXPECT_NEAR(shear_stress(many), Y, 1e-12 * Y);
       double work = 0.0;    // integral of Y
       const int n = 20000;
       for (int i = 0; i < n; i++) work += h.Y((i + 0.5) * e / n) * e / n;
-      EXPECT_NEAR(many.work[PLASTIC], work, 1e-4 * work);
+      EXPECT_NEAR(many.work[PLASTIC], work, 3e-5 * work);
       EXPECT_NEAR(many.stored_energy() + many.work[PLASTIC], many.power, 1e-4 * work);
     }
   }
@@ -168,7 +168,7 @@ TEST(J2Kinematic, LoopInClosedForm)
         }
         // plastic strain with sign is what remains of the total
         if (gamma == 0.0 && H == 0.0) {
-          EXPECT_NEAR(x / C, total - shear_stress(p) / (3 * G), 1e-10);
+          EXPECT_NEAR(x / C, total - shear_stress(p) / (3 * G), 1e-12);
         }
       }
     }
@@ -180,7 +180,7 @@ TEST(J2Kinematic, ReverseYieldInTension)
   Point p(J2 + "kinematic 5e9 0");
   for (int i = 0; i < 500; i++) p.step_uniaxial_stress(1.0, 1e-4);
   const double top = p.stress(0), e = p.history(0);
-  EXPECT_NEAR(top, SIGMAY + 5e9 * e / p.batch.J[0], 1e-6 * top);
+  EXPECT_NEAR(top, SIGMAY + 5e9 * e / p.batch.J[0], 1e-12 * top);
   double reverse = 0.0;
   for (int i = 0; i < 2000 && p.history(0) == e; i++) {
     p.step_uniaxial_stress(-1.0, 5e-6);
@@ -203,8 +203,8 @@ TEST(J2Kinematic, StabilizedCycle)
     top = std::fabs(shear_stress(p));
   }
   const double expected = SIGMAY + C / gamma * std::tanh(0.5 * gamma * range);
-  EXPECT_NEAR(top, expected, 1e-9 * expected);
-  EXPECT_NEAR(range, 2 * strain - 2 * top / (3 * G), 1e-10);
+  EXPECT_NEAR(top, expected, 1e-12 * expected);
+  EXPECT_NEAR(range, 2 * strain - 2 * top / (3 * G), 1e-13);
 }
 
 // the back stress turns with the point: reversed loading after any rotation is the same
@@ -289,7 +289,7 @@ TEST(J2Rate, SteadyOverstress)
       MaterialPoint p(*material);
       const double strain = 3 * (0.1 + expected / (3 * G));
       shear(p, 10 * strain, 10 * strain / rate, 200);
-      EXPECT_NEAR(shear_stress(p), expected, 1e-8 * expected) << "rate " << rate;
+      EXPECT_NEAR(shear_stress(p), expected, 2e-9 * expected) << "rate " << rate;
     }
   }
 }
@@ -341,10 +341,10 @@ TEST(J2Rate, AgainstDifferentialEquation)
     const auto error = refined(400, [&](int n) {
       MaterialPoint p(*material);
       for (int i = 0; i < n; i++) shear(p, speed((i + 0.5) * time / n) * time / n, time / n);
-      if (n == 1600) EXPECT_NEAR(p.history(0), exact[1], 0.01 * exact[1]);
+      if (n == 1600) EXPECT_NEAR(p.history(0), exact[1], 3e-4 * exact[1]);
       return std::fabs(shear_stress(p) / exact[0] - 1.0);
     });
-    EXPECT_LT(error[2], 2e-3);
+    EXPECT_LT(error[2], 5e-4);
     expect_order(error, 1.0, 0.15);
   }
 }
@@ -409,11 +409,11 @@ TEST(ZerilliArmstrongLaw, FlowStress)
   for (const auto &set : sets)
     for (int k = 0; k < 4; k++) {
       const double Y = set.law(e[k], rate[k], T[k]), D = 1e-3;
-      EXPECT_NEAR(Y, set.known[k] * MPa, 1e-3 * MPa);
+      EXPECT_NEAR(Y, set.known[k] * MPa, 3e-4 * MPa);
       Point p(set.law.text(450, T[k], 0.0));
       p.batch.history[0][0] = e[k] - D;
       shear(p, D + Y / (3 * 80e9), D / rate[k]);
-      EXPECT_NEAR(shear_stress(p), Y, 1e-8 * Y);
+      EXPECT_NEAR(shear_stress(p), Y, 1e-12 * Y);
       EXPECT_NEAR(p.history(0), e[k], 1e-11);
     }
 }
@@ -458,11 +458,11 @@ TEST(ZerilliArmstrongLaw, AgainstDifferentialEquation)
     MaterialPoint p(*material);
     shear(p, 0.3, time, n);
     EXPECT_NEAR(p.history(1) - 300, exact[2] - 300, 0.01 * (exact[2] - 300));
-    EXPECT_NEAR(p.history(0), exact[1], 1e-3 * exact[1]);
+    EXPECT_NEAR(p.history(0), exact[1], 6e-6 * exact[1]);
     EXPECT_NEAR(p.work[HEAT], rho * cp * (p.history(1) - 300), 1e-10 * p.work[HEAT]);
     return std::fabs(shear_stress(p) / exact[0] - 1.0);
   });
-  EXPECT_LT(error[2], 1e-3);
+  EXPECT_LT(error[2], 5e-5);
   EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85);
 }
 
@@ -517,11 +517,11 @@ TEST(SteinbergLaw, ModulusAndFlowStress)
       p.batch.history[2][0] = T;
       move_to(p, isotropic(std::cbrt(J)));
       const double P = p.pressure(), f = scg_factor(P, J, T), G = SCG_G0 * f;
-      EXPECT_NEAR(P, 137e9 * (1 / J - 1), 1e-9 * 137e9);
-      EXPECT_NEAR(p.wave_speed(), std::sqrt((137e9 + 4.0 / 3 * G) / 8930), 1e-9 * p.wave_speed());
+      EXPECT_NEAR(P, 137e9 * (1 / J - 1), 1e-11 * 137e9);
+      EXPECT_NEAR(p.wave_speed(), std::sqrt((137e9 + 4.0 / 3 * G) / 8930), 1e-11 * p.wave_speed());
       MaterialPoint q(p);
       steps(q, {0, 1e-6, 0, 1e-6, 0, 0, 0, 0, 0}, 1.0);
-      EXPECT_NEAR(q.stress(3), 2e-6 * G / J, 1e-9 * G);
+      EXPECT_NEAR(q.stress(3), 2e-6 * G / J, 1e-12 * G);
       for (int i = 0; i < 5; i++) {
         shear(p, i ? 0.2 : 0.02, 1.0);
         const double Y = f * scg_yield(p.history(0));
@@ -529,7 +529,7 @@ TEST(SteinbergLaw, ModulusAndFlowStress)
       }
       EXPECT_EQ(p.history(2), T);    // no heat
       EXPECT_NEAR(p.stored_energy() - 137e9 * (J - 1 - std::log(J)),
-                  std::pow(J * p.vonmises(), 2) / (6 * G), 1e-6 * 137e9 * 1e-6);
+                  std::pow(J * p.vonmises(), 2) / (6 * G), 1e-7 * 137e9 * 1e-6);
     }
   EXPECT_GT(137e9 * (1 / 0.12 - 1), 1e12);    // TPa are reached
 }
@@ -542,7 +542,7 @@ TEST(SteinbergLaw, PrestrainAndReferenceTemperature)
   const double f = 1 + 3.77e-4 * 100;
   MaterialPoint q(p);
   steps(q, {0, 1e-6, 0, 1e-6, 0, 0, 0, 0, 0}, 1.0);
-  EXPECT_NEAR(q.stress(3), 2e-6 * 47.7e9 * f, 1e-9 * 47.7e9);
+  EXPECT_NEAR(q.stress(3), 2e-6 * 47.7e9 * f, 1e-12 * 47.7e9);
   for (int i = 0; i < 5; i++) {
     shear(p, 0.01, 1.0);
     const double Y = f * 0.12e9 * std::pow(1 + 36 * (p.history(0) + 0.05), 0.45);
@@ -592,7 +592,7 @@ TEST(SteinbergLaw, EnergyOnAPathThroughHighPressure)
     }
     return worst;
   });
-  EXPECT_LT(error[2], 1e-6 * scale);
+  EXPECT_LT(error[2], 4e-8 * scale);
   EXPECT_GT(std::log2(error[0] / error[2]), 2 * 1.7);
 }
 
@@ -643,8 +643,8 @@ TEST(Strengths, UniaxialStress)
         const double r = p.batch.plastic[0] * n / 0.3 * rate;
         if (r < 0.5 * rate) continue;
         const double Y = c.Y(p.history(0), r, T, P, J);
-        ASSERT_NEAR(sign * p.stress(0), Y, 1e-6 * Y) << "step " << i;
-        ASSERT_NEAR(p.stress(1), 0.0, 1e-6 * Y);
+        ASSERT_NEAR(sign * p.stress(0), Y, 1e-10 * Y) << "step " << i;
+        ASSERT_NEAR(p.stress(1), 0.0, 1e-10 * Y);
       }
       EXPECT_GT(p.history(0), 0.28);
     }
@@ -660,9 +660,9 @@ TEST(Strengths, UniaxialStrain)
   EXPECT_NEAR(p.batch.J[0], J, 1e-12);
   // the back stress is linear in e, and J times the Cauchy stress
   const double Y = SIGMAY + 2e8 * (1 - std::exp(-15 * e)) + 1e8 * e + 20e9 * e / J;
-  EXPECT_NEAR(p.pressure(), 160e9 * (1 / J - 1), 1e-10 * 160e9);
+  EXPECT_NEAR(p.pressure(), 160e9 * (1 / J - 1), 1e-12 * 160e9);
   EXPECT_NEAR(p.stress(1) - p.stress(0), Y, 1e-10 * Y);
-  EXPECT_NEAR(-2.0 / 3 * std::log(J), e + (p.stress(1) - p.stress(0)) * J / (3 * G), 2e-4 * e);
+  EXPECT_NEAR(-2.0 / 3 * std::log(J), e + (p.stress(1) - p.stress(0)) * J / (3 * G), 8e-7 * e);
 }
 
 // shear with a superposed rotation of two turns: rate forms are objective for small steps
@@ -686,7 +686,7 @@ TEST(Strengths, RotationOnTopOfShear)
                   });
       error[level] = worst / scale;
     }
-    EXPECT_LT(error[1], 1e-3);
+    EXPECT_LT(error[1], 4e-5);
     EXPECT_GT(std::log2(error[0] / error[1]), 2 * 0.8) << error[0] << " " << error[1];
   }
 }
@@ -697,7 +697,7 @@ TEST(Thermal, PlasticWorkHeats)
   Point p(joined(J2, "thermal adiabatic ", cp, " 293 ", chi)), q(J2 + "thermal constant 293");
   for (MaterialPoint *point : {&p, &q}) shear(*point, 0.5, 1.0, 50);
   const double e = 0.5 - SIGMAY / (3 * G);
-  EXPECT_NEAR(p.history(1), 293 + chi * SIGMAY * e / (rho * cp), 1e-9 * 293);
+  EXPECT_NEAR(p.history(1), 293 + chi * SIGMAY * e / (rho * cp), 1e-11 * 293);
   EXPECT_NEAR(p.work[HEAT], chi * p.work[PLASTIC], 1e-12 * p.work[PLASTIC]);
   EXPECT_EQ(q.history(1), 293);
   EXPECT_EQ(q.work[HEAT], q.work[PLASTIC]);
@@ -733,7 +733,7 @@ TEST(Thermal, HeatOfFusion)
     fraction = std::min(std::max((all - melt) * cp / latent, 0.0), 1.0);
     T = all - fraction * latent / cp;
     EXPECT_NEAR(p.history(2), fraction, tolerance);
-    EXPECT_NEAR(p.history(1), T, 1e3 * tolerance);
+    EXPECT_NEAR(p.history(1), T, 1.0 * tolerance);
   };
   for (const double strain : {0.2, 0.1, 0.1, 0.1, 0.2}) {
     shear(p, strain, 1.0, 20);
@@ -767,8 +767,8 @@ TEST(Thermal, ViscousWorkHeats)
   const double rate = 1e3, time = 1e-3;
   steps(p, {0, 0.5 * rate, 0, 0.5 * rate, 0, 0, 0, 0, 0}, time / 10, 10);
   const double heat = 1000 * rate * rate * time;    // mu (2 D12)^2
-  EXPECT_NEAR(p.work[VISCOUS], heat, 1e-9 * heat);
-  EXPECT_NEAR(p.history(0) - 300, heat / (1000 * 4000), 1e-9);
+  EXPECT_NEAR(p.work[VISCOUS], heat, 1e-12 * heat);
+  EXPECT_NEAR(p.history(0) - 300, heat / (1000 * 4000), 1e-11);
 }
 
 /** Flow stress in MPa after shear at a rate, from the temperature of the file. */

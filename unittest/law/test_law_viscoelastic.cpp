@@ -57,10 +57,10 @@ TEST(KelvinVoigt, InitialStressIsKept)
   Point p("density 1000 linear 1e6 0.3 viscosity newtonian 300");
   for (int k = 0; k < 6; k++) p.batch.stress[k][0] = 100.0 * (k + 1);
   steps(p, {0, 0.1, 0, 0.1, 0, 0, 0, 0, 0}, 1e-9);
-  EXPECT_NEAR(p.stress(3), 400 + 2 * 300 * 0.1, 1e-3);
-  EXPECT_NEAR(p.stress(4), 500, 1e-3);
+  EXPECT_NEAR(p.stress(3), 400 + 2 * 300 * 0.1, 5e-4);
+  EXPECT_NEAR(p.stress(4), 500, 1e-9);
   steps(p, STILL, 1e-9);
-  EXPECT_NEAR(p.stress(3), 400, 1e-3);
+  EXPECT_NEAR(p.stress(3), 400, 5e-4);
 }
 
 // forced shear: loss angle tan(delta) = ETA omega / G, and the work of a cycle
@@ -79,9 +79,9 @@ TEST(KelvinVoigt, OscillatingShear)
       out_of_phase += 2.0 / n * p.stress(3) / g0 * std::cos(omega * i * dt);
     }
     EXPECT_NEAR(in_phase, G, 2e-3 * G);
-    EXPECT_NEAR(out_of_phase, eta * omega, 2e-3 * eta * omega);
+    EXPECT_NEAR(out_of_phase, eta * omega, 1e-5 * eta * omega);
     const double cycle = M_PI * eta * omega * g0 * g0;
-    EXPECT_NEAR(p.work[VISCOUS], cycle, 1e-5 * cycle);
+    EXPECT_NEAR(p.work[VISCOUS], cycle, 5e-6 * cycle);
   }
 }
 
@@ -126,7 +126,7 @@ TEST(Maxwell, Relaxation)
     }
     if (dt < 0.1) {
       while (p.time < 5.0) steps(p, STILL, dt);
-      EXPECT_NEAR(p.work[VISCOUS], stored, 2e-2 * stored);    // all that was stored
+      EXPECT_NEAR(p.work[VISCOUS], stored, 6e-3 * stored);    // all that was stored
     }
   }
 }
@@ -164,7 +164,7 @@ TEST(Maxwell, StartOfSteadyShear)
       worst =
           std::max({worst, std::fabs(p.stress(3) - shear) / (eta * rate),
                     std::fabs(p.stress(0) - p.stress(1) - normal) / (2 * eta * tau * rate * rate)});
-      EXPECT_NEAR(p.stress(1), p.stress(2), 1e-9 * eta * rate);    // no second difference
+      EXPECT_NEAR(p.stress(1), p.stress(2), 1e-11 * eta * rate);    // no second difference
     }
     // in steady flow all power is dissipated
     const double before = p.work[VISCOUS];
@@ -220,10 +220,10 @@ TEST(Maxwell, OscillatingShear)
         expected_storage += G[k] * x * x / (1 + x * x);
         expected_loss += G[k] * x / (1 + x * x);
       }
-      EXPECT_NEAR(storage, expected_storage, 2e-3 * expected_storage) << omega;
-      EXPECT_NEAR(loss, expected_loss, 5e-3 * expected_storage) << omega;
+      EXPECT_NEAR(storage, expected_storage, 8e-5 * expected_storage) << omega;
+      EXPECT_NEAR(loss, expected_loss, 2e-5 * expected_storage) << omega;
       const double cycle = M_PI * expected_loss * g0 * g0;
-      EXPECT_NEAR(p.work[VISCOUS] - work, cycle, 1e-2 * cycle) << omega;
+      EXPECT_NEAR(p.work[VISCOUS] - work, cycle, 5e-7 * cycle) << omega;
     }
   }
 }
@@ -251,7 +251,7 @@ TEST(Maxwell, DissipatesWhatItHasStored)
     move_to(p, {1, 1e-3, 0, 0, 1, 0, 0, 0, 1}, 1e-9);
     const double stored = p.stored_energy(), viscous = p.work[VISCOUS];
     steps(p, STILL, 0.02 / n, n);
-    EXPECT_NEAR(stored - p.stored_energy(), 0.5 * 5e4 * 1e-6, 1e-4 * stored) << n;
+    EXPECT_NEAR(stored - p.stored_energy(), 0.5 * 5e4 * 1e-6, 4e-6 * stored) << n;
     // in steps as long as the relaxation time the rule of integration shows
     EXPECT_NEAR(p.work[VISCOUS] - viscous, 0.5 * 5e4 * 1e-6, (n == 10 ? 0.2 : 1e-3) * stored) << n;
   }
@@ -393,9 +393,9 @@ TEST(Newtonian, BulkViscosity)
       q("density 1000 eos linear 1e9");
   for (auto *point : {&p, &q}) steps(*point, {-3, 1, 0, 1, 1, 0, 0, 0, 0.5}, 1e-6);
   const double tr = -1.5;
-  EXPECT_NEAR(p.pressure() - q.pressure(), -5 * tr, 1e-6);
-  EXPECT_NEAR(p.stress(3), 2 * 2 * 1.0, 1e-9);
-  EXPECT_NEAR(p.stress(0) - p.stress(1), 2 * 2 * (-4.0), 1e-8);
+  EXPECT_NEAR(p.pressure() - q.pressure(), -5 * tr, 1e-11);
+  EXPECT_NEAR(p.stress(3), 2 * 2 * 1.0, 1e-11);
+  EXPECT_NEAR(p.stress(0) - p.stress(1), 2 * 2 * (-4.0), 1e-10);
   const double D2 = 9 + 1 + 0.25 + 2 - tr * tr / 3;
   EXPECT_NEAR(p.work[VISCOUS] / 1e-6, 2 * 2 * D2 + 5 * tr * tr, 1e-4);
 }
@@ -415,11 +415,11 @@ TEST(StableStep, FollowsTheApparentViscosity)
   };
   EXPECT_NEAR(speed("newtonian 200 bulk 100", 0), limit(4.0 / 3 * 200 + 100), 1e-9);
   EXPECT_NEAR(speed("bingham 5 1000 400", 0), limit(4.0 / 3 * 400), 1e-9);
-  EXPECT_NEAR(speed("bingham 5 1000 400", 10), limit(4.0 / 3 * 105), 1e-6);
-  EXPECT_NEAR(speed("herschel/bulkley 3 0.5 1000 400", 100), limit(4.0 / 3 * 10.3), 1e-6);
-  EXPECT_NEAR(speed("power 3 0.5 0.1 400", 100), limit(4.0 / 3 * 0.3), 1e-6);
+  EXPECT_NEAR(speed("bingham 5 1000 400", 10), limit(4.0 / 3 * 105), 1e-10);
+  EXPECT_NEAR(speed("herschel/bulkley 3 0.5 1000 400", 100), limit(4.0 / 3 * 10.3), 1e-10);
+  EXPECT_NEAR(speed("power 3 0.5 0.1 400", 100), limit(4.0 / 3 * 0.3), 1e-10);
   // thickening: the slope of the flow curve counts
-  EXPECT_NEAR(speed("power 3 2 0.1 4000", 100), limit(4.0 / 3 * 2 * 300), 1e-6);
+  EXPECT_NEAR(speed("power 3 2 0.1 4000", 100), limit(4.0 / 3 * 2 * 300), 1e-9);
 }
 
 TEST(Extremes, AreFinite)

@@ -130,7 +130,7 @@ TEST(Library, ModuliAreThoseOfEAndNu)
     EXPECT_NEAR(sheared.stress(3) / e / (0.5 * E / (1 + nu)), 1.0, 5e-3);
     if (std::regex_search(text, shock)) continue;
     move_to(pressed, isotropic(1 - e));
-    EXPECT_NEAR(pressed.pressure() / (3 * e) / (E / (3 * (1 - 2 * nu))), 1.0, 5e-3);
+    EXPECT_NEAR(pressed.pressure() / (3 * e) / (E / (3 * (1 - 2 * nu))), 1.0, 6e-4);
   }
   EXPECT_GE(files, 14);
 }
@@ -165,7 +165,7 @@ TEST(Library, WetSandIsAtCriticalState)
   EXPECT_NEAR(p.density(), (2650 + 0.915 * 1000) / 1.915, 1.0);
   const double G = 125 * 1e5 * std::pow(2.97 - 0.915, 2) / 1.915;
   const double K = 2 * G * 1.05 / (3 * 0.9);
-  EXPECT_NEAR(p.wave_speed(), std::sqrt((K + 4 * G / 3) / p.density()), 0.002 * p.wave_speed());
+  EXPECT_NEAR(p.wave_speed(), std::sqrt((K + 4 * G / 3) / p.density()), 4e-4 * p.wave_speed());
   // squeezed to about 100 kPa, then triaxial compression at constant volume: q = 1.25 p
   move_to(p, isotropic(0.9987));
   const double pressure = p.pressure();
@@ -175,7 +175,7 @@ TEST(Library, WetSandIsAtCriticalState)
     move_to(p, diagonal(a, b, b));
   }
   EXPECT_NEAR(p.vonmises() / p.pressure(), 1.25, 1e-4);
-  EXPECT_NEAR(p.pressure(), pressure, 1e-6 * pressure);
+  EXPECT_NEAR(p.pressure(), pressure, 1e-12 * pressure);
 }
 
 TEST(Library, GelatinFollowsItsHugoniot)
@@ -194,7 +194,7 @@ TEST(Library, GelatinFollowsItsHugoniot)
   for (int i = 1; i <= 200 && !failed; i++) {
     move_to(p, {1, 0.01 * i, 0, 0, 1, 0, 0, 0, 1});
     if (value(p, "damage") >= 1.0) failed = 0.01 * i;
-    if (i > 60 && !failed) EXPECT_NEAR(p.vonmises(), 0.22e6, 1.0);
+    if (i > 60 && !failed) EXPECT_NEAR(p.vonmises(), 0.22e6, 1e-6);
   }
   // at a shear of sqrt(3) in steps of 0.01, with some of the elastic shear lost as it turns
   EXPECT_NEAR(failed, std::sqrt(3.0) * (0.9 + 0.22e6 / (3 * 0.85e6)), 0.03);
@@ -226,7 +226,7 @@ TEST(Library, WeldoxFailsAtTheStrainsOfItsTests)
         move_to(p, diagonal(axial, lateral, lateral));
       }
     }
-    EXPECT_NEAR(value(p, "eplastic"), shear ? 0.636 + 1.936 : 1.355612, 2e-3) << shear;
+    EXPECT_NEAR(value(p, "eplastic"), shear ? 0.636 + 1.936 : 1.355612, 5e-4) << shear;
   }
 }
 

@@ -198,8 +198,8 @@ SERIAL_TEST(Level, ForcesAndWork)
   const double *const left = run.fix_vector("left", 7), on_left = left[1];
   const double *const right = run.fix_vector("right", 7), on_right = right[1];
   EXPECT_GT(std::fabs(stress), 1e4);
-  EXPECT_NEAR(measured("force over that of the column", on_right / stress), 1.0, 0.02);
-  EXPECT_NEAR(measured("left over right", on_left / on_right), -1.0, 0.002);
+  EXPECT_NEAR(measured("force over that of the column", on_right / stress), 1.0, 0.001);
+  EXPECT_NEAR(measured("left over right", on_left / on_right), -1.0, 2e-5);
   run.lmp->modify->get_compute_by_id("e")->compute_scalar();
   const double *const e = run.compute_vector();
   EXPECT_NEAR(measured("residual", e[10] / (e[0] + e[1])), 0.0, 1e-11);
@@ -257,7 +257,7 @@ SERIAL_TEST(Level, InSpaceAndOtherUnits)
     grow(off, mean(2.0, 3.0) - mean(5.0, 8.0));
   }
   EXPECT_GT(most, 1e-4);
-  EXPECT_LT(measured("ground against column", off / most), 0.01);
+  EXPECT_LT(measured("ground against column", off / most), 1e-10);
 }
 
 TEST(Column, RanksAndRestart)

@@ -264,15 +264,15 @@ TEST(Elastic, LinearIsHookesLawForSmallStrain)
   const auto material = make("density 1000 linear 3e6 0.2");
   MaterialPoint p(*material);
   for (int i = 0; i < 10; i++) p.step_uniaxial_stress(0.1 * e, 1.0);
-  EXPECT_NEAR(p.stress(0), E * e, 1e-6 * E * e);
+  EXPECT_NEAR(p.stress(0), E * e, 4e-7 * E * e);
   EXPECT_NEAR(p.stress(1), 0.0, 1e-9 * E * e);
-  EXPECT_NEAR(p.batch.F[4][0] - 1.0, -nu * e, 1e-6 * e);
+  EXPECT_NEAR(p.batch.F[4][0] - 1.0, -nu * e, 8e-9 * e);
   MaterialPoint q(*material);
   steps(q, diagonal(e, 0, 0), 1.0);
   const double lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), mu = 0.5 * E / (1 + nu);
   EXPECT_NEAR(q.stress(0), (lambda + 2 * mu) * e, 1e-6 * E * e);
-  EXPECT_NEAR(q.stress(1), lambda * e, 1e-6 * E * e);
-  EXPECT_NEAR(q.wave_speed(), std::sqrt((lambda + 2 * mu) / 1000), 1e-6 * q.wave_speed());
+  EXPECT_NEAR(q.stress(1), lambda * e, 2e-7 * E * e);
+  EXPECT_NEAR(q.wave_speed(), std::sqrt((lambda + 2 * mu) / 1000), 1e-12 * q.wave_speed());
 }
 
 TEST(Elastic, InitialStressIsKept)
@@ -296,7 +296,7 @@ TEST(Plastic, PureShearReachesYield)
   Point p(STEEL);
   steps(p, {0, 0.5, 0, 0.5, 0, 0, 0, 0, 0}, 1e-4, 100);
   EXPECT_NEAR(p.stress(3), 300 * MPa / std::sqrt(3.0), 1e-12 * 300 * MPa);
-  EXPECT_NEAR(p.history(0), 0.01 / std::sqrt(3.0) - 300e6 / (3 * 80e9), 1e-12);
+  EXPECT_NEAR(p.history(0), 0.01 / std::sqrt(3.0) - 300e6 / (3 * 80e9), 1e-13);
   EXPECT_NEAR(p.work[PLASTIC], 300e6 * p.history(0), 1e-6);
   EXPECT_EQ(p.work[HEAT], p.work[PLASTIC]);
 }
@@ -331,10 +331,10 @@ TEST(Plastic, UniaxialStress)
   for (int i = 0; i < n; i++) p.step_uniaxial_stress(strain, 1.0 / n);
   const double e = p.history(0), sigma = p.stress(0), J = 1.0 / (1.0 - sigma / (3 * K));
   EXPECT_NEAR(sigma, sigmay + H * e, 1e-10 * sigma);
-  EXPECT_NEAR(p.stress(1), 0.0, 1e-6 * sigmay);
-  EXPECT_NEAR(std::log(p.batch.F[0][0]), e + J * sigma / (3 * G) + std::log(J) / 3, 1e-8 * strain);
+  EXPECT_NEAR(p.stress(1), 0.0, 1e-11 * sigmay);
+  EXPECT_NEAR(std::log(p.batch.F[0][0]), e + J * sigma / (3 * G) + std::log(J) / 3, 1e-9 * strain);
   const double E = 9 * K * G / (3 * K + G), Et = E * H / (E + H);
-  EXPECT_NEAR(sigma, sigmay + Et * (strain - sigmay / E), 1e-4 * sigma);    // small strain
+  EXPECT_NEAR(sigma, sigmay + Et * (strain - sigmay / E), 4e-5 * sigma);    // small strain
 }
 
 // E1(f): Hugoniot elastic limit
@@ -352,14 +352,14 @@ TEST(Plastic, HugoniotElasticLimit)
   EXPECT_EQ(p.history(0), 0.0);
   steps(p, L, 1e-7, 2);
   EXPECT_GT(p.history(0), 0.0);
-  EXPECT_NEAR(-p.stress(0), exact, 1e-6 * exact);
+  EXPECT_NEAR(-p.stress(0), exact, 4e-7 * exact);
   EXPECT_NEAR(-p.stress(0), 591.176 * MPa, 0.01 * 591.176 * MPa);    // small strain
 
   // behind it the material moves at the bulk speed: J d sigma / d strain = density c^2
   const double before = p.stress(0);
   steps(p, L, 1e-3);
   const double slope = (p.stress(0) - before) / (-strain * 1e-3);
-  EXPECT_NEAR(std::sqrt(slope * p.batch.J[0] / rho), 5041.59, 1.0);
+  EXPECT_NEAR(std::sqrt(slope * p.batch.J[0] / rho), 5041.59, 0.08);
 }
 
 // large steps, from the virgin state, exactly at and just above yield, steep hardening
@@ -445,7 +445,7 @@ TEST(JohnsonCookLaw, FlowStress)
       const double gamma = (Y + 3 * G * D) / (std::sqrt(3.0) * G);    // all in one step
       const double dt = D / rate[k];
       steps(p, {0, gamma / 2 / dt, 0, gamma / 2 / dt, 0, 0, 0, 0, 0}, dt);
-      EXPECT_NEAR(p.vonmises(), Y, 1e-8 * Y);
+      EXPECT_NEAR(p.vonmises(), Y, 1e-12 * Y);
       EXPECT_NEAR(p.history(0), e[k], 1e-11);
       EXPECT_EQ(p.history(1), T[k]);
     }
@@ -500,7 +500,7 @@ TEST(JohnsonCookLaw, AdiabaticTensionAndShear)
     steps(q, {0, 500, 0, 500, 0, 0, 0, 0, 0}, dt);
     if (p.time > tension[pulled][0] - 1e-12) {
       const double *known = tension[pulled++], J = p.batch.J[0];
-      EXPECT_NEAR(p.history(0), known[1], 1e-3 * known[1]);
+      EXPECT_NEAR(p.history(0), known[1], 2e-4 * known[1]);
       EXPECT_NEAR(p.stress(0), known[2], 1e-3 * known[2]);
       EXPECT_GT(J, 1.002);
       EXPECT_NEAR((p.history(1) - 20) / J, known[3] - 20, 1e-3 * known[3]);
@@ -508,13 +508,13 @@ TEST(JohnsonCookLaw, AdiabaticTensionAndShear)
     if (q.time > shear[sheared][0] - 1e-12) {
       const double *known = shear[sheared++];
       EXPECT_NEAR(q.history(0), known[1], 1e-3 * known[1]);
-      EXPECT_NEAR(q.vonmises(), known[2], 1e-3 * known[2]);
-      EXPECT_NEAR(q.history(1), known[3], 1e-3 * known[3]);
+      EXPECT_NEAR(q.vonmises(), known[2], 2e-4 * known[2]);
+      EXPECT_NEAR(q.history(1), known[3], 8e-5 * known[3]);
     }
   }
   EXPECT_EQ(pulled, 3);
   EXPECT_EQ(sheared, 3);
-  EXPECT_NEAR(q.work[HEAT], 0.9 * q.work[PLASTIC], 1e-10 * q.work[PLASTIC]);
+  EXPECT_NEAR(q.work[HEAT], 0.9 * q.work[PLASTIC], 1e-12 * q.work[PLASTIC]);
   EXPECT_NEAR(q.work[HEAT], 7830 * 460 * (q.history(1) - 20), 1e-10 * q.work[HEAT]);
 }
 
@@ -525,7 +525,7 @@ TEST(JohnsonCookLaw, MeltedMaterialHasNoStrength)
   p.batch.history[1][0] = 1600;
   for (int i = 0; i < 10; i++) {
     steps(p, {-0.01, 0.02, 0, 0, 0, 0, 0, 0, 0}, 1.0);
-    EXPECT_NEAR(p.vonmises(), 0.0, 1e-3);
+    EXPECT_NEAR(p.vonmises(), 0.0, 2e-4);
     EXPECT_TRUE(std::isfinite(p.history(0)));
   }
   EXPECT_GT(p.pressure(), 1e9);
@@ -576,16 +576,16 @@ TEST(Viscosity, Newtonian)
   Point p("density 1000 eos linear 1e9 viscosity newtonian 3");
   steps(p, {0.1, 4, 0, 0, -0.2, 0, 0, 0, 0.4}, 1e-8);
   const double mean = 0.1;
-  EXPECT_NEAR(p.stress(3), 3 * 4.0, 1e-6);
-  EXPECT_NEAR(p.stress(0) + p.pressure(), 2 * 3 * (0.1 - mean), 1e-6);
-  EXPECT_NEAR(p.stress(2) + p.pressure(), 2 * 3 * (0.4 - mean), 1e-6);
+  EXPECT_NEAR(p.stress(3), 3 * 4.0, 1e-10);
+  EXPECT_NEAR(p.stress(0) + p.pressure(), 2 * 3 * (0.1 - mean), 1e-12);
+  EXPECT_NEAR(p.stress(2) + p.pressure(), 2 * 3 * (0.4 - mean), 1e-11);
   const double power = 2 * 3 * (0.0 * 0.0 + 0.3 * 0.3 + 0.3 * 0.3 + 2 * 2.0 * 2.0);
-  EXPECT_NEAR(p.work[VISCOUS], power * 1e-8, 1e-6 * power * 1e-8);
+  EXPECT_NEAR(p.work[VISCOUS], power * 1e-8, 1e-6 * power * 1e-10);
   steps(p, {}, 1e-8);
   EXPECT_EQ(p.stress(3), 0.0);
   // stable step: viscous limit for large viscosity
   Point q("density 1000 eos linear 1e3 viscosity newtonian 1e6", 1, 0.1);
-  EXPECT_NEAR(q.wave_speed(), 2 * (4.0 / 3) * 1e6 / (1000 * 0.1), 1e-3 * q.wave_speed());
+  EXPECT_NEAR(q.wave_speed(), 2 * (4.0 / 3) * 1e6 / (1000 * 0.1), 1e-8 * q.wave_speed());
 }
 
 TEST(Viscosity, ArtificialOnlyInCompression)
@@ -693,11 +693,11 @@ TEST(Energy, DissipationHeatsTheEquationOfState)
   EXPECT_NEAR(p.history(0), p.power, 3e-4 * p.power);    // first order: q is of the mid-step
   EXPECT_GT(p.work[VISCOUS], 100.0);
   EXPECT_NEAR(p.history(1), p.work[VISCOUS], 1e-10 * p.work[VISCOUS]);
-  EXPECT_NEAR(q.history(0), 0.0, 1e-5 * p.work[VISCOUS]);
+  EXPECT_NEAR(q.history(0), 0.0, 1e-10 * p.work[VISCOUS]);
   // thermal pressure GAMMA0 E at the reference volume
   const double J = p.batch.J[0];
   EXPECT_NEAR(p.pressure() - q.pressure(), 2 * p.history(0) * (1 + 2 * (1 - J)),
-              1e-3 * p.pressure());
+              3e-8 * p.pressure());
 
   Point s("density 8930 eos shock 3940 1.49 1.96 strength j2 43e9 157e6");
   follow(s, there_and_back, 1.0, 1000);
@@ -775,7 +775,7 @@ TEST(WaveSpeed, UniaxialCompressionIsExact)
     for (int i = 1; i <= 300; i++) {
       move_to(p, uniaxial_stretch(1 - 1e-3 * i));
       if (i % 100) continue;
-      EXPECT_NEAR(p.wave_speed(), std::sqrt(speed2(p, {1, 0, 0})), 1e-5 * p.wave_speed()) << text;
+      EXPECT_NEAR(p.wave_speed(), std::sqrt(speed2(p, {1, 0, 0})), 4e-9 * p.wave_speed()) << text;
     }
   }
 }
@@ -944,7 +944,7 @@ TEST(Definition, OfFOnlyWhatIsDeclared)
     if (material->uses_F())
       EXPECT_GT(difference, 1e-3);
     else
-      EXPECT_LT(difference, 1e-6);    // round-off, large near a pole of eos shock
+      EXPECT_LT(difference, 3e-7);    // round-off, large near a pole of eos shock
     shapes += material->uses_F();
   }
   EXPECT_EQ(shapes, 12);    // hyperelastic ones, two of them with a viscosity

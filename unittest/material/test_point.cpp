@@ -110,7 +110,7 @@ TEST(MixedControl, ShearWithFreeFaces)
   EXPECT_NEAR(p.stress(1), 0.0, 1e-11 * E);
   EXPECT_NEAR(p.stress(2), 0.0, 1e-11 * E);
   EXPECT_GT(p.stress(3), 0.5 * MU);
-  EXPECT_NEAR(p.power, p.stored_energy(), 1e-9 * E);    // P is linear in the shear
+  EXPECT_NEAR(p.power, p.stored_energy(), 1e-12 * E);    // P is linear in the shear
 }
 
 // a rotation of the frame changes nothing in it, for any path
@@ -133,7 +133,7 @@ TEST(MixedControl, SuperposedRotation)
   q.frame_state(F[1], stress[1]);
   for (int k = 0; k < 9; k++) EXPECT_NEAR(F[1][k], F[0][k], 1e-12);
   for (int k = 0; k < 6; k++) EXPECT_NEAR(stress[1][k], stress[0][k], 1e-11 * E);
-  EXPECT_NEAR(stress[0][1], -1e5, 1e-10 * E);
+  EXPECT_NEAR(stress[0][1], -1e5, 1e-13 * E);
 }
 
 TEST(MixedControl, ViscousFluidUnderShearStress)
@@ -144,8 +144,8 @@ TEST(MixedControl, ViscousFluidUnderShearStress)
   c.stress_given[3] = true;
   c.stress[3] = tau;
   for (int i = 0; i < 10; i++) p.step(c, 1e-3);
-  EXPECT_NEAR(p.batch.A[1][0] / 1e-3, tau / (2 * viscosity), 1e-3);
-  EXPECT_NEAR(p.stress(3), tau, 1e-8);
+  EXPECT_NEAR(p.batch.A[1][0] / 1e-3, tau / (2 * viscosity), 2e-5);
+  EXPECT_NEAR(p.stress(3), tau, 1e-10);
 }
 
 // all unknowns at once, far in the plastic range, and a strength that ends
@@ -162,7 +162,7 @@ TEST(MixedControl, PlasticFlow)
   }
   EXPECT_NEAR(p.vonmises(), 500e6, 1e-2);
   EXPECT_NEAR(p.pressure(), 1e9, 1e-2);
-  EXPECT_NEAR(p.history(0), (500e6 - 300e6) / 2e9, 1e-9);
+  EXPECT_NEAR(p.history(0), (500e6 - 300e6) / 2e9, 1e-13);
 
   Point q("density 7800 eos linear 160e9 strength j2 80e9 300e6");
   MixedControl tension;
@@ -186,31 +186,31 @@ TEST(Point, UniaxialStress)
     EXPECT_NEAR(t["Fxx"][k], stretch, 1e-12);
     EXPECT_NEAR(t["exx"][k], 2.0 * t["time"][k], 1e-12);
     EXPECT_NEAR(t["eyy"][k], std::log(side), 1e-12);
-    EXPECT_NEAR(t["sxx"][k], stress, 1e-10 * E);
-    EXPECT_NEAR(t["vonmises"][k], stress, 1e-10 * E);
-    EXPECT_NEAR(t["pressure"][k], -stress / 3, 1e-10 * E);
+    EXPECT_NEAR(t["sxx"][k], stress, 1e-12 * E);
+    EXPECT_NEAR(t["vonmises"][k], stress, 1e-12 * E);
+    EXPECT_NEAR(t["pressure"][k], -stress / 3, 1e-12 * E);
     EXPECT_NEAR(t["lode"][k], k == 0 ? 0.0 : 1.0, 1e-10);
-    EXPECT_NEAR(t["work"][k], t["stored"][k], 1e-4 * E);
+    EXPECT_NEAR(t["work"][k], t["stored"][k], 2e-5 * E);
   }
   t = drive("uniaxial/stress -2 strain 0.5 yy stress -3e5 zz stress -3e5 material " + RUBBER);
   EXPECT_NEAR(t["exx"].back(), -0.5, 1e-12);
-  EXPECT_NEAR(t["sxx"].back(), uniaxial(std::exp(-0.5), -3e5)[1], 1e-10 * E);
+  EXPECT_NEAR(t["sxx"].back(), uniaxial(std::exp(-0.5), -3e5)[1], 1e-12 * E);
   EXPECT_NEAR(t["lode"].back(), -1.0, 1e-10);
 }
 
 TEST(Point, PathsOfGivenMotion)
 {
   auto t = drive("uniaxial/strain -1 strain 0.3 material " + RUBBER);
-  EXPECT_NEAR(t["sxx"].back(), neohookean(std::exp(-0.3), std::exp(-0.3)), 1e-10 * E);
+  EXPECT_NEAR(t["sxx"].back(), neohookean(std::exp(-0.3), std::exp(-0.3)), 1e-12 * E);
   EXPECT_NEAR(t["Fyy"].back(), 1.0, 1e-15);
   t = drive("volumetric 1 strain 0.3 material " + RUBBER);
   EXPECT_NEAR(t["J"].back(), std::exp(0.3), 1e-12);
-  EXPECT_NEAR(-t["pressure"].back(), neohookean(std::exp(0.1), std::exp(0.3)), 1e-10 * E);
+  EXPECT_NEAR(-t["pressure"].back(), neohookean(std::exp(0.1), std::exp(0.3)), 1e-12 * E);
   t = drive("shear 3 strain 1.5 steps 13 material " + RUBBER);
   EXPECT_EQ(t["step"].size(), 14);
   EXPECT_NEAR(t["Fxy"].back(), 1.5, 1e-13);
-  EXPECT_NEAR(t["sxy"].back(), MU * 1.5, 1e-10 * E);
-  EXPECT_NEAR(t["sxx"].back() - t["syy"].back(), MU * 1.5 * 1.5, 1e-10 * E);
+  EXPECT_NEAR(t["sxy"].back(), MU * 1.5, 1e-12 * E);
+  EXPECT_NEAR(t["sxx"].back() - t["syy"].back(), MU * 1.5 * 1.5, 1e-12 * E);
 }
 
 TEST(Point, BiaxialAndTriaxial)
@@ -221,8 +221,8 @@ TEST(Point, BiaxialAndTriaxial)
     return neohookean(s, a * a * s);
   });
   EXPECT_NEAR(t["Fzz"].back(), thick, 1e-12);
-  EXPECT_NEAR(t["sxx"].back(), neohookean(a, a * a * thick), 1e-10 * E);
-  EXPECT_NEAR(t["syy"].back(), t["sxx"].back(), 1e-10 * E);
+  EXPECT_NEAR(t["sxx"].back(), neohookean(a, a * a * thick), 1e-12 * E);
+  EXPECT_NEAR(t["syy"].back(), t["sxx"].back(), 1e-12 * E);
 
   const double P = 4e5;
   t = drive("triaxial -1 4e5 strain 0.5 steps 200 every 200 material " + RUBBER);
@@ -233,10 +233,10 @@ TEST(Point, BiaxialAndTriaxial)
     return neohookean(s, s * s * s) + P;
   });
   EXPECT_NEAR(t["Fxx"][1], start, 1e-11);
-  EXPECT_NEAR(t["sxx"][1], -P, 1e-10 * E);
+  EXPECT_NEAR(t["sxx"][1], -P, 1e-12 * E);
   EXPECT_NEAR(t["Fxx"][2], start * std::exp(-0.5), 1e-11);
-  EXPECT_NEAR(t["sxx"][2], uniaxial(start * std::exp(-0.5), -P)[1], 1e-9 * E);
-  EXPECT_NEAR(t["syy"][2], -P, 1e-9 * E);
+  EXPECT_NEAR(t["sxx"][2], uniaxial(start * std::exp(-0.5), -P)[1], 1e-12 * E);
+  EXPECT_NEAR(t["syy"][2], -P, 1e-12 * E);
 }
 
 // tension first, then compression, and back to no strain; the plastic strain goes on
@@ -250,8 +250,8 @@ TEST(Point, Cycle)
   for (int k = 0; k < 9; k++) {
     EXPECT_NEAR(t["exx"][k], strain[k], 1e-12);
     const double flow = 300e6 + 2e9 * t["eplastic"][k];
-    if (k % 4 == 1) EXPECT_NEAR(t["sxx"][k], flow, 1e-8 * flow);
-    if (k % 4 == 3) EXPECT_NEAR(t["sxx"][k], -flow, 1e-8 * flow);
+    if (k % 4 == 1) EXPECT_NEAR(t["sxx"][k], flow, 1e-12 * flow);
+    if (k % 4 == 3) EXPECT_NEAR(t["sxx"][k], -flow, 1e-11 * flow);
     if (k > 0) EXPECT_GT(t["eplastic"][k], t["eplastic"][k - 1]);
   }
 }
@@ -263,7 +263,7 @@ TEST(Point, Shock)
   ASSERT_EQ(t["step"].size(), 31);
   EXPECT_NEAR(t["us"][0], 3940, 1e-9);
   for (size_t k = 0; k < 31; k++) {
-    EXPECT_NEAR(t["us"][k], 3940 + 1.49 * t["up"][k], 1e-8 * 3940);
+    EXPECT_NEAR(t["us"][k], 3940 + 1.49 * t["up"][k], 1e-11 * 3940);
     EXPECT_NEAR(t["energy"][k], t["jump"][k], 1e-12 * t["jump"].back());
     EXPECT_NEAR(t["J"][k], std::exp(-0.01 * k), 1e-13);
   }
@@ -280,8 +280,8 @@ TEST(Point, RotationAndTemperature)
   auto hot = drive(path + "temperature 700 material " + steel);
   for (const char *column : {"exx", "eyy", "Fxx", "Fyy", "Fxy"})
     EXPECT_NEAR(turned[column].back(), plain[column].back(), 1e-5);
-  EXPECT_NEAR(turned["sxx"].back(), plain["sxx"].back(), 1e-4 * plain["sxx"].back());
-  EXPECT_NEAR(turned["sxy"].back(), 0.0, 1e-3 * plain["sxx"].back());
+  EXPECT_NEAR(turned["sxx"].back(), plain["sxx"].back(), 4e-5 * plain["sxx"].back());
+  EXPECT_NEAR(turned["sxy"].back(), 0.0, 4e-5 * plain["sxx"].back());
   EXPECT_EQ(plain["temperature"][0], 20.0);
   EXPECT_EQ(hot["temperature"][0], 700.0);
   EXPECT_LT(hot["sxx"].back(), 0.7 * plain["sxx"].back());
@@ -298,11 +298,11 @@ TEST(Point, FormulasOfTime)
                                "zz stress 0 material {}",
                                n, RUBBER),
                    formulas);
-    EXPECT_NEAR(t["syy"].back(), 2e5 * std::sin(1.0), 1e-9 * E);
-    EXPECT_NEAR(t["szz"].back(), 0.0, 1e-9 * E);
+    EXPECT_NEAR(t["syy"].back(), 2e5 * std::sin(1.0), 1e-13 * E);
+    EXPECT_NEAR(t["szz"].back(), 0.0, 1e-12 * E);
     const double error = std::fabs(t["exx"].back() - 0.4 * std::sin(1.0));
-    EXPECT_LT(error, 1e-4);
-    if (old > 0.0) EXPECT_NEAR(std::log2(old / error), 2.0, 0.01);
+    EXPECT_LT(error, 1e-5);
+    if (old > 0.0) EXPECT_NEAR(std::log2(old / error), 2.0, 2e-5);
     old = error;
   }
   // a spin: one turn about z
@@ -318,9 +318,9 @@ TEST(Point, Units)
   auto metal =
       drive("uniaxial/strain -1e-3 strain 0.1 material density 1.62597815 eos shock 53.5 1.34 2",
             "units metal\n");
-  EXPECT_NEAR(metal["sxx"].back() * 1e5, si["sxx"].back(), 1e-6 * std::fabs(si["sxx"].back()));
-  EXPECT_NEAR(metal["wavespeed"].back() * 100, si["wavespeed"].back(), 1e-6 * 5350);
-  EXPECT_NEAR(metal["energy"].back() * 1e5, si["energy"].back(), 1e-6 * si["energy"].back());
+  EXPECT_NEAR(metal["sxx"].back() * 1e5, si["sxx"].back(), 4e-7 * std::fabs(si["sxx"].back()));
+  EXPECT_NEAR(metal["wavespeed"].back() * 100, si["wavespeed"].back(), 1e-11 * 5350);
+  EXPECT_NEAR(metal["energy"].back() * 1e5, si["energy"].back(), 4e-7 * si["energy"].back());
 }
 
 // a path that leaves two ranges, one in many steps: one warning each, with the first step; shear
@@ -348,7 +348,7 @@ TEST(Point, LodeParameterOfAnySize)
     const auto table = drive("uniaxial/strain 1 time 0.1 steps 5 material density 1000 linear " +
                              modulus + " 0.3");
     for (size_t i = 1; i < table.at("lode").size(); i++)
-      EXPECT_NEAR(table.at("lode")[i], 1.0, 1e-9) << modulus;
+      EXPECT_NEAR(table.at("lode")[i], 1.0, 1e-12) << modulus;
   }
 }
 

@@ -432,7 +432,7 @@ TEST(Tangent, OfNextToNoMotion)
             if (!(difference <= worst[side])) worst[side] = difference;
           }
       const double least = std::min(worst[0], worst[1]);
-      EXPECT_LE(least, 1e-6 * largest(t, 0)) << "motion " << A[i][0] << " " << A[i][1];
+      EXPECT_LE(least, 4e-8 * largest(t, 0)) << "motion " << A[i][0] << " " << A[i][1];
     }
   }
 }

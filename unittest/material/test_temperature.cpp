@@ -105,7 +105,7 @@ TEST(Expansion, IsTakenOutOfTheMotionOfAnyLaw)
       move_to(p, isotropic(theta) * F);
       move_to(q, F);
       const double size_of = size(stress_of(q)) + 1e-6 * q.wave_speed() * q.wave_speed() * 1000;
-      ASSERT_LT(distance(stress_of(p), stress_of(q)), 1e-9 * size_of);
+      ASSERT_LT(distance(stress_of(p), stress_of(q)), 1e-10 * size_of);
       ASSERT_NEAR(p.stored_energy(), q.stored_energy() * theta * theta * theta,
                   1e-9 * std::fabs(q.stored_energy()) + 1e-12 * size_of);
     }
@@ -135,7 +135,7 @@ TEST(Expansion, FreeBodyHasNoStress)
           move_to(p, isotropic(std::pow(1 + strain, double(i) / n)));
         }
         for (int k = 0; k < 6; k++) EXPECT_NEAR(p.stress(k), 0.0, 1e-8 * strain * 1e6 + 1e-9);
-        EXPECT_NEAR(p.stored_energy(), 0.0, 1e-8);
+        EXPECT_NEAR(p.stored_energy(), 0.0, 1e-12);
       }
 }
 
@@ -160,8 +160,8 @@ TEST(Expansion, ClampedBar)
       q.step(clamped, 1.0);
       r.step_uniaxial_stress(-std::log(1.3) / 100, 1.0);
     }
-    EXPECT_NEAR(q.stress(0), r.stress(0), 1e-9 * std::fabs(r.stress(0)));
-    EXPECT_NEAR(q.stress(1), 0.0, 1e-6);
+    EXPECT_NEAR(q.stress(0), r.stress(0), 1e-11 * std::fabs(r.stress(0)));
+    EXPECT_NEAR(q.stress(1), 0.0, 3e-8);
   }
 }
 
@@ -199,7 +199,7 @@ TEST(Expansion, ConsistentCoupling)
     for (MaterialPoint *point : {(MaterialPoint *) &p, (MaterialPoint *) &q})
       move_to(*point, isotropic(std::cbrt(J)));
     const double dT = value(p, "temperature") - 293;
-    EXPECT_NEAR(dT / (293 * gamma * 1e-5), 1.0, 2e-4);
+    EXPECT_NEAR(dT / (293 * gamma * 1e-5), 1.0, 6e-5);
     EXPECT_EQ(value(q, "temperature"), 293);
     const double stiffer = 1 + 9 * alpha * alpha * K * 293 / capacity;
     EXPECT_NEAR(p.pressure() / q.pressure(), stiffer, 1e-4 * (stiffer - 1) + 1e-7);
@@ -208,7 +208,7 @@ TEST(Expansion, ConsistentCoupling)
     // back again
     move_to(p, IDENTITY);
     EXPECT_NEAR(value(p, "temperature"), 293, 1e-10);
-    EXPECT_NEAR(p.pressure(), 0.0, 1e-9 * K);
+    EXPECT_NEAR(p.pressure(), 0.0, 1e-12 * K);
   }
 }
 
@@ -238,21 +238,21 @@ TEST(Expansion, ConsistentCouplingOfWhatVaries)
       MaterialPoint q = r;
       move_to(q, isotropic(std::cbrt(J * (1 + 1e-6))));
       const double slope = -(q.pressure() - r.pressure()) / 1e-6;    // -J dp/dJ = density c^2
-      EXPECT_NEAR(r.wave_speed() / std::sqrt(slope * J / rho), 1.0, 2e-2);
+      EXPECT_NEAR(r.wave_speed() / std::sqrt(slope * J / rho), 1.0, 4e-6);
     }
   }
-  EXPECT_LT(error[1], 1e-6);
+  EXPECT_LT(error[1], 5e-8);
   Point p(start + "vary ALPHA table 0 0.5 900 2 vary eos.K table 0 0.5 900 2");
   const double given = 3 * 1.0 * K * alpha / (rho * cp);
   move_to(p, isotropic(std::cbrt(1 - 1e-6)));
-  EXPECT_NEAR((value(p, "temperature") / T0 - 1) / (given * 1e-6), 1.0, 1e-3);
+  EXPECT_NEAR((value(p, "temperature") / T0 - 1) / (given * 1e-6), 1.0, 2e-6);
   for (const auto &[vary, factor] : {std::pair{"vary ALPHA table 200 1 400 2", 1.5},
                                      std::pair{"vary eos.K table 200 1 400 2", 1.5},
                                      std::pair{"vary CP table 200 1 400 2", 1 / 1.5}}) {
     SCOPED_TRACE(vary);
     Point q(start + vary);
     move_to(q, isotropic(std::cbrt(1 - 1e-6)));
-    EXPECT_NEAR((value(q, "temperature") / T0 - 1) / (given * factor * 1e-6), 1.0, 1e-3);
+    EXPECT_NEAR((value(q, "temperature") / T0 - 1) / (given * factor * 1e-6), 1.0, 3e-6);
   }
   if (!RandomField::available()) return;
   for (const char *parameter : {"CP", "ALPHA", "density", "eos.K"})
@@ -294,7 +294,7 @@ TEST(Expansion, Aluminum)
   q.step(clamped, 1.0);
   r.step(confined, 1.0);
   EXPECT_NEAR((std::cbrt(p.batch.J[0]) - 1) / PART, 2.3e-3, 1e-6 * 2.3e-3);
-  EXPECT_NEAR(q.stress(0) / PART, -1.61e8, 1e-6 * 1.61e8);
+  EXPECT_NEAR(q.stress(0) / PART, -1.61e8, 5e-7 * 1.61e8);
   EXPECT_NEAR(r.stress(0) / PART, -4.735294118e8, 1e-6 * 4.73529e8);
 
   Point s(text + " gruneisen consistent"), t(text);
@@ -365,7 +365,7 @@ TEST(Conducted, HeatRaisesThePressure)
         if (more.find("CP") != std::string::npos && T > 300)
           heat += 900 * (T - 300) * (T - 300) / 400;
         EXPECT_NEAR((p.pressure() - start) / (w.density * w.gamma * 900 * 300), heat / (900 * 300),
-                    1e-9);
+                    1e-11);
         EXPECT_NEAR(p.stored_energy(), stored, 1e-9 * w.density * 900 * 300);
         EXPECT_EQ(value(p, "temperature"), T);
       }
@@ -437,7 +437,7 @@ TEST(Conducted, HeatExpandsAFreeBody)
     warm_to(p, 300.1);
     p.step(free, 1.0);
     const double alpha = w.gamma * w.density * 900 / (3 * w.K);
-    EXPECT_NEAR((p.batch.J[0] - 1) / (3 * alpha * 0.1), 1.0, 1e-4);
+    EXPECT_NEAR((p.batch.J[0] - 1) / (3 * alpha * 0.1), 1.0, 5e-5);
   }
 }
 
@@ -566,15 +566,15 @@ TEST(Vary, AdiabaticShear)
           1e-3;    // what varies is that of the start of a step: tau lags by 1.4e-4 with 4e-3
       while (strain() < gamma - by) shear(by);
       shear(gamma - strain());    // nearly all of it is plastic
-      EXPECT_NEAR(strain() / gamma, 1.0, 1e-5);
+      EXPECT_NEAR(strain() / gamma, 1.0, 1e-6);
       EXPECT_NEAR(DTM * (1 - std::exp(-chi * sigma0 / std::sqrt(3.0) * gamma / (rho * cp * DTM))),
                   dT, 1e-6 * dT);
       EXPECT_NEAR((value(p, "temperature") - 293) / dT, 1.0, 1e-4);
       EXPECT_NEAR(p.vonmises() / std::sqrt(3.0) / tau, 1.0, 1e-4);
     }
     // what is not heat is stored in the metal
-    EXPECT_NEAR(p.work[HEAT], chi * p.work[PLASTIC], 1e-10 * p.work[PLASTIC]);
-    EXPECT_NEAR(rho * cp * (value(p, "temperature") - 293), p.work[HEAT], 1e-9 * p.work[HEAT]);
+    EXPECT_NEAR(p.work[HEAT], chi * p.work[PLASTIC], 1e-12 * p.work[PLASTIC]);
+    EXPECT_NEAR(rho * cp * (value(p, "temperature") - 293), p.work[HEAT], 1e-11 * p.work[HEAT]);
   }
   Point cold(start + "j2 79.46e9 500e6 thermal adiabatic 477 293 0");
   steps(cold, {0, 1e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0, 1000);
@@ -612,17 +612,17 @@ TEST(Vary, ShareOfPlasticWork)
           steps(p, {0, 1e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0);
           heat += 0.5 * factor(T) * (p.work[PLASTIC] + p.work[FRACTURE] - work);
           scale = std::max(scale, heat);
-          ASSERT_NEAR(p.work[HEAT], heat, 1e-9 * scale) << i;
+          ASSERT_NEAR(p.work[HEAT], heat, 1e-11 * scale) << i;
           ASSERT_NEAR(C * (value(p, "temperature") - 293), heat, 1e-9 * scale);
         }
         EXPECT_GT(value(p, "temperature"), broken ? 360 : 390);
-        if (has(law, "shock")) EXPECT_NEAR(value(p, "heat"), heat, 1e-9 * heat);
+        if (has(law, "shock")) EXPECT_NEAR(value(p, "heat"), heat, 1e-11 * heat);
         if (broken || !more.empty() || has(law, "cook")) continue;
         // dT/dW = CHI(T)/(density CP)
         if (!table)
           EXPECT_NEAR((value(p, "temperature") - 293) /
                           (500 * std::expm1(0.5 * 0.002 * p.work[PLASTIC] / C)),
-                      1.0, 1e-3);
+                      1.0, 2e-4);
         Point q(all, 1, 0.01);
         steps(q, {0, 1e-3, 0, 0, 0, 0, 0, 0, 0}, 1.0, 3000);
         if (!has(law, "shock")) EXPECT_EQ(distance(stress_of(p), stress_of(q)), 0.0);
@@ -697,7 +697,7 @@ TEST(Vary, SpecificHeatByFormula)
                         (900 * c.factor(std::min(std::max(T, 200.0), 900.0))),
                     1.0, T > 900 ? 1e-9 : 1e-3);
         p.material.warm(h.data(), -heat(T));
-        EXPECT_NEAR(h[at], 200, 1e-9 * 200);
+        EXPECT_NEAR(h[at], 200, 1e-12 * 200);
       }
       // by its own work
       Point q("density 1000 eos linear 1e9 viscosity newtonian 1e12 thermal adiabatic 900 200" +
@@ -708,7 +708,7 @@ TEST(Vary, SpecificHeatByFormula)
         EXPECT_NEAR((sensible(value(q, "temperature")) + molten) * 1000, q.work[VISCOUS],
                     1e-5 * 3.6e8);
       }
-      EXPECT_NEAR(q.work[VISCOUS], 3.6e8, 0.01 * 3.6e8);
+      EXPECT_NEAR(q.work[VISCOUS], 3.6e8, 1e-12 * 3.6e8);
     }
   }
 }
@@ -820,24 +820,24 @@ TEST(Sources, WorkOfDamageRaisesThePressure)
             work -= 0.5 * (old + p.pressure()) * (p.batch.J[0] - Jold);
             const double q = SHARE * p.work[FRACTURE] + brought;
             if (!gas && (soft.empty() || value(p, "damage") == 0.0))
-              EXPECT_NEAR(p.stored_energy() - stored0 + p.work[FRACTURE], work, 1e-9 * 2e7);
-            EXPECT_NEAR(heat(), q, 1e-9 * 2e7);
-            EXPECT_NEAR(c.density * CP * (value(p, "temperature") - 300), q, 1e-9 * 2e7);
+              EXPECT_NEAR(p.stored_energy() - stored0 + p.work[FRACTURE], work, 1e-11 * 2e7);
+            EXPECT_NEAR(heat(), q, 1e-10 * 2e7);
+            EXPECT_NEAR(c.density * CP * (value(p, "temperature") - 300), q, 1e-10 * 2e7);
           }
         };
         steps_to(1.08);
         EXPECT_EQ(value(p, "damage"), 1.0);
         const double set_free = p.work[FRACTURE];
         EXPECT_GT(set_free, 1e7);
-        EXPECT_NEAR(p.pressure(), 0.0, 1.0);
+        EXPECT_NEAR(p.pressure(), 0.0, 1e-6);
         const double before = work - p.stored_energy();
         steps_to(1.0);
         steps_to(0.97);
         steps_to(1.0);
         move_to(p, IDENTITY);
-        if (!gas) EXPECT_NEAR(work - p.stored_energy(), before, 1e-9 * 2e7);
+        if (!gas) EXPECT_NEAR(work - p.stored_energy(), before, 1e-11 * 2e7);
         EXPECT_EQ(p.work[FRACTURE], set_free);
-        EXPECT_NEAR(p.work[HEAT], SHARE * set_free, 1e-9 * set_free);
+        EXPECT_NEAR(p.work[HEAT], SHARE * set_free, 1e-12 * set_free);
         EXPECT_EQ(value(p, "unspent_heat"), 0.0);
         const double thermal = SHARE * set_free + brought;
         EXPECT_NEAR(p.pressure() / (c.gamma * thermal), 1.0, 0.05);
@@ -867,8 +867,8 @@ TEST(Sources, WorkOfDamageWithPlasticWork)
           error[level] = std::max(error[level], std::fabs(accounted - p.power));
           scale = std::max(scale, p.power);
           const double heat = chi * p.work[PLASTIC] + 0.7 * p.work[FRACTURE];
-          ASSERT_NEAR(value(p, "heat") + value(p, "unspent_heat"), heat, 1e-9 * scale);
-          ASSERT_NEAR(7850 * 460 * (value(p, "temperature") - 293), heat, 1e-9 * scale);
+          ASSERT_NEAR(value(p, "heat") + value(p, "unspent_heat"), heat, 1e-12 * scale);
+          ASSERT_NEAR(7850 * 460 * (value(p, "temperature") - 293), heat, 1e-10 * scale);
         }
         EXPECT_EQ(value(p, "damage"), 1.0);
         EXPECT_GT(p.work[FRACTURE], 0.01 * scale);
@@ -886,14 +886,14 @@ TEST(Sources, WorkOfDamageWithPlasticWork)
   EXPECT_EQ(value(p, "damage"), 1.0);
   const double heat = 0.9 * p.work[PLASTIC] + 0.5 * p.work[FRACTURE];
   EXPECT_GT(0.5 * p.work[FRACTURE], 1e-3 * heat);
-  EXPECT_NEAR(value(p, "heat"), heat, 1e-9 * heat);
+  EXPECT_NEAR(value(p, "heat"), heat, 1e-12 * heat);
   const double J = p.batch.J[0];
-  EXPECT_NEAR(J, 1.0, 0.01);
+  EXPECT_NEAR(J, 1.0, 1e-12);
   const auto cold = [](double J) {
     return 371.2e9 / 4.15 * std::exp(-4.15 * J) + 3.231e9 / 0.95 * std::exp(-0.95 * J);
   };
   EXPECT_NEAR(1630 * 1000 * (value(p, "temperature") - start_T),
-              value(p, "energy") - E - cold(J) + cold(1.0), 1e-9 * E);
+              value(p, "energy") - E - cold(J) + cold(1.0), 1e-12 * E);
 }
 
 // all that any law dissipates warms its point: the share CHI of plastic work, and all viscous work
@@ -926,17 +926,17 @@ TEST(Sources, DetonationProducts)
   EXPECT_GT(hot, 2000);
   Point p(tnt + thermal);
   move_to(p, IDENTITY);
-  EXPECT_NEAR(value(p, "temperature"), hot, 1e-9 * hot);
+  EXPECT_NEAR(value(p, "temperature"), hot, 1e-12 * hot);
   for (const double l : {0.9, 1.5, 3.0}) {
     compress(p, l, 2000);
-    EXPECT_NEAR(value(p, "temperature") / (hot * std::pow(l, -omega)), 1.0, 1e-4);
+    EXPECT_NEAR(value(p, "temperature") / (hot * std::pow(l, -omega)), 1.0, 8e-7);
   }
   // three cells of 1 m burn in 3/6930 s
   Point q(tnt + "detonate 0 0 0 0 " + thermal, 1, 1.0);
   for (int i = 1; i <= 12; i++) {
     move_to(q, IDENTITY, 0.1 * 3 / 6930);
     const double burn = std::min(0.1 * i, 1.0);
-    EXPECT_NEAR(value(q, "temperature"), burn * hot + (1 - burn) * 293, 1e-6 * hot);
+    EXPECT_NEAR(value(q, "temperature"), burn * hot + (1 - burn) * 293, 1e-12 * hot);
   }
   // viscous heat, once
   Point v(tnt + "viscosity newtonian 1e9 " + thermal);
@@ -945,9 +945,9 @@ TEST(Sources, DetonationProducts)
   const double J = v.batch.J[0];
   const double thermal_energy =
       value(v, "energy") - A / R1 * std::exp(-R1 * J) - B / R2 * std::exp(-R2 * J);
-  EXPECT_NEAR(value(v, "temperature"), thermal_energy / (1630 * 1000), 1e-8 * hot);
+  EXPECT_NEAR(value(v, "temperature"), thermal_energy / (1630 * 1000), 1e-11 * hot);
   EXPECT_NEAR(thermal_energy / (1630 * 1000),
-              hot * std::pow(J, -omega) + v.work[VISCOUS] / (1630 * 1000), 1e-3 * hot);
+              hot * std::pow(J, -omega) + v.work[VISCOUS] / (1630 * 1000), 1e-11 * hot);
   EXPECT_GT(v.work[VISCOUS] / (1630 * 1000), 100);
   expect_refused(
       {{tnt + "thermal conducting 1000 293 1 0.9 gruneisen 1", "follows from the internal energy"},
@@ -973,24 +973,24 @@ TEST(Sources, DetonationProductsConduct)
     brought += 10.0 * i;
     move_to(p, IDENTITY, 0.1 * 3 / 6930);
     const double burn = std::min(0.1 * i, 1.0);
-    EXPECT_NEAR(value(p, "temperature"), burn * hot + (1 - burn) * 293 + brought, 1e-9 * hot);
-    EXPECT_NEAR(value(p, "energy") - E0, C * brought, 1e-9 * E0);
-    EXPECT_NEAR(value(p, "heat"), C * brought, 1e-9 * E0);
+    EXPECT_NEAR(value(p, "temperature"), burn * hot + (1 - burn) * 293 + brought, 1e-11 * hot);
+    EXPECT_NEAR(value(p, "energy") - E0, C * brought, 1e-12 * E0);
+    EXPECT_NEAR(value(p, "heat"), C * brought, 1e-12 * E0);
   }
   const double E = E0 + C * brought;
   EXPECT_NEAR(-p.stress(0),
               A * (1 - omega / R1) * std::exp(-R1) + B * (1 - omega / R2) * std::exp(-R2) +
                   omega * E,
-              1e-9 * E);
+              1e-11 * E);
   // expanded, it is as if all had been there from the start
   compress(p, 2.0, 2000);
-  EXPECT_NEAR(value(p, "temperature") / ((E - cold) / C * std::pow(2.0, -omega)), 1.0, 1e-4);
+  EXPECT_NEAR(value(p, "temperature") / ((E - cold) / C * std::pow(2.0, -omega)), 1.0, 6e-7);
   // what had burnt from the start is warm, and nothing was conducted to it
   Point all("density 1630 eos jwl 371.2e9 3.231e9 4.15 0.95 0.3 7.0e9 6930 thermal conducting 1000 "
             "293 1");
   for (int i = 0; i < 3; i++) {
     move_to(all, IDENTITY);
-    EXPECT_NEAR(value(all, "temperature"), hot, 1e-9 * hot);
+    EXPECT_NEAR(value(all, "temperature"), hot, 1e-12 * hot);
     EXPECT_EQ(value(all, "heat"), 0.0);
   }
   // together with viscous heat, once
@@ -1003,7 +1003,7 @@ TEST(Sources, DetonationProductsConduct)
     for (auto *q : {&v, &w}) steps(*q, {0, 1, 0, 1, 0, 0, 0, 0, 0}, 1e-3);
   }
   EXPECT_GT(w.work[VISCOUS], 1e8);
-  EXPECT_NEAR(value(v, "temperature") - value(w, "temperature"), 300.0, 0.3);
+  EXPECT_NEAR(value(v, "temperature") - value(w, "temperature"), 300.0, 1e-9);
 }
 
 const std::string METAL =
@@ -1031,13 +1031,13 @@ TEST(Melting, IsALiquidThenANewSolid)
   steps(fluid, shear, 1.0, 21);
   EXPECT_LT(distance(stress_of(p), stress_of(fluid)), 1e-12);
   EXPECT_EQ(value(p, "eplastic"), 0.0);
-  EXPECT_NEAR(p.wave_speed(), fluid.wave_speed(), 1e-9 * fluid.wave_speed());
+  EXPECT_NEAR(p.wave_speed(), fluid.wave_speed(), 1e-12 * fluid.wave_speed());
   melt(p, 0.0);
   steps(p, {}, 1.0);
   EXPECT_NEAR(p.vonmises(), 0.0, 1e-12);
   steps(p, shear, 1.0, 20);
   steps(metal, shear, 1.0, 20);
-  EXPECT_NEAR(p.vonmises(), metal.vonmises(), 1e-9 * metal.vonmises());
+  EXPECT_NEAR(p.vonmises(), metal.vonmises(), 1e-12 * metal.vonmises());
   EXPECT_NEAR(value(p, "eplastic"), value(metal, "eplastic"), 1e-12);
 }
 
@@ -1049,19 +1049,19 @@ TEST(Melting, PartsShareTheStress)
   steps(p, {0, 1e-4, 0, 1e-4, 0, 0, 0, 0, 0}, 1.0);
   EXPECT_NEAR(p.stress(3), 0.5 * 2 * 5e5 * 1e-4 + 0.5 * 2 * 10 * 1e-4, 1e-9);
   const double stored = p.stored_energy(), elastic = 0.5 * 100.0;    // of the points
-  EXPECT_NEAR(stored, 0.5 * 2 * 100.0 * 100.0 / (4 * 5e5), 1e-9);
+  EXPECT_NEAR(stored, 0.5 * 2 * 100.0 * 100.0 / (4 * 5e5), 1e-13);
   // melting takes its share away, and its energy becomes heat
   melt(p, 0.75);
   steps(p, {}, 1.0);
   EXPECT_NEAR(p.stress(3), 0.5 * elastic, 1e-9);
-  EXPECT_NEAR(p.stored_energy(), 0.5 * stored, 1e-9 * stored);
-  EXPECT_NEAR(p.work[PLASTIC], 0.5 * stored, 1e-9 * stored);
-  EXPECT_NEAR(p.work[HEAT], 0.5 * stored, 1e-9 * stored);
+  EXPECT_NEAR(p.stored_energy(), 0.5 * stored, 1e-12 * stored);
+  EXPECT_NEAR(p.work[PLASTIC], 0.5 * stored, 1e-12 * stored);
+  EXPECT_NEAR(p.work[HEAT], 0.5 * stored, 1e-12 * stored);
   // solidification does not change the stress
   melt(p, 0.5);
   steps(p, {}, 1.0);
   EXPECT_NEAR(p.stress(3), 0.5 * elastic, 1e-9);
-  EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], stored, 1e-9 * stored);
+  EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], stored, 1e-12 * stored);
 }
 
 TEST(Melting, EnergyBalance)
@@ -1081,7 +1081,7 @@ TEST(Melting, EnergyBalance)
     }
     return worst;
   });
-  EXPECT_LT(error[2], 2e-3 * scale);
+  EXPECT_LT(error[2], 8e-5 * scale);
   EXPECT_GT(std::log2(error[0] / error[2]), 2 * 0.85)
       << error[0] / scale << " " << error[2] / scale;
 }

@@ -35,7 +35,7 @@ SERIAL_TEST(Energy, OfWaterThatLeaves)
     EXPECT_LT(volume, 0.0);
     EXPECT_NEAR(measured(formulation + ": energy over that of the pressure outside",
                          run.variable("came") / (300.0 * volume)),
-                1.0, 1e-9);
+                1.0, 1e-12);
   }
 }
 
@@ -51,8 +51,8 @@ SERIAL_TEST(Every, IsTheSame)
     out[every] = run.fix("water")->compute_scalar();
   }
   EXPECT_LT(out[0], 0.0);
-  EXPECT_NEAR(measured("pressure with every 4 over that without", mean[1] / mean[0]), 1.0, 1e-9);
-  EXPECT_NEAR(measured("water that left", out[1] / out[0]), 1.0, 1e-9);
+  EXPECT_NEAR(measured("pressure with every 4 over that without", mean[1] / mean[0]), 1.0, 1e-12);
+  EXPECT_NEAR(measured("water that left", out[1] / out[0]), 1.0, 1e-12);
 }
 
 // a material without points, or a density that grains cannot have: ground dry, or too light

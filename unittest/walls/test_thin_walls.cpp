@@ -104,13 +104,13 @@ TEST(ThinPlate, IsTheSameInAUnion)
   for (const char *kind : {"separate", "slip friction 0.3", "separate friction 0.3"})
     for (const double thickness : {0.8, 4.0}) {
       const auto alone = rest(0.05, thickness, 0.5, 4, kind);
-      EXPECT_NEAR(alone.weight, 1.0, 0.005);
+      EXPECT_NEAR(alone.weight, 1.0, 5e-4);
       for (const char *wall :
            {"region wall union 2 plate far\n", "region wall union 2 far plate\n",
             "region both union 2 plate far\nregion wall union 2 far both\n",
             "region not block -9 -8 -9 -8 INF INF side out\nregion wall intersect 2 plate not\n"}) {
         const auto in_union = rest(0.05, thickness, 0.5, 4, kind, far + wall);
-        EXPECT_NEAR(in_union.settled, alone.settled, 1.0e-12) << kind << " " << thickness << wall;
+        EXPECT_NEAR(in_union.settled, alone.settled, 1e-13) << kind << " " << thickness << wall;
         EXPECT_NEAR(in_union.weight, alone.weight, 1.0e-12) << kind << " " << thickness << wall;
       }
     }
@@ -152,7 +152,7 @@ double punch(double h, double height, double side, double surface, const std::st
 TEST(Punch, HeightDoesNotMatter)
 {
   const double high = measured("punch, high", punch(0.05, 10, 0, 0));
-  EXPECT_NEAR(measured("punch, 1.5 h high", punch(0.05, 1.5, 0, 0)) / high, 1.0, 0.01);
+  EXPECT_NEAR(measured("punch, 1.5 h high", punch(0.05, 1.5, 0, 0)) / high, 1.0, 3e-4);
   EXPECT_NEAR(measured("punch, 0.8 h high", punch(0.05, 0.8, 0.5, 0.5)) / high, 1.0, 0.05);
   EXPECT_NEAR(measured("punch, h/2, 1.5 h high", punch(0.025, 1.5, 0, 0.5)) / high, 1.0, 0.1);
 }
@@ -463,7 +463,7 @@ TEST(Surfaces, OfSharpCones)
     const double end = strstr(kind, "0 1 -1") ? 1.0 : -1.0;
     for (const double z : {-1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5}) {
       const double at[3] = {0.0, 0.0, z}, same[3] = {end * z, 0.0, 0.0};
-      EXPECT_NEAR(surface.distance(at, 100.0), tip(same), 1.0e-9) << kind << " " << z;
+      EXPECT_NEAR(surface.distance(at, 100.0), tip(same), 1e-10) << kind << " " << z;
     }
   }
 }
@@ -511,8 +511,8 @@ TEST(Surfaces, Normals)
   for (const double off : {0.0, 1.0e-16, 0.05 * STEP})
     EXPECT_EQ(normal_at("cylinder z 0.1 0.3 0.5 -2 2", {0.1 + off, 0.3, 0.0}), (Vector{0, 0, 0}));
   const Vector corner = normal_at("block -1 1 -1 1 -2 2", {0.5, 0.5, 0.0});
-  EXPECT_NEAR(corner[0], std::sqrt(0.5), 1.0e-9);
-  EXPECT_NEAR(corner[1], std::sqrt(0.5), 1.0e-9);
+  EXPECT_NEAR(corner[0], std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(corner[1], std::sqrt(0.5), 1e-12);
 }
 
 // LAMMPS divides zero by zero for a cone with a zero radius. One with a tiny one is the same wall.
@@ -540,7 +540,7 @@ TEST(Cones, SharpEnds)
       double most = 0.0;
       for (const auto &node : sharp)
         for (int d = 0; d < 3; d++) grow(most, node.second[d] - blunt.at(node.first)[d]);
-      EXPECT_LT(measured(std::string(kind) + ", " + cone + ": difference", most), 1.0e-5);
+      EXPECT_LT(measured(std::string(kind) + ", " + cone + ": difference", most), 3e-9);
     }
 }
 
