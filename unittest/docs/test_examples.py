@@ -108,7 +108,9 @@ class Example:
             if not re.search(r"\.(png|vt[pu]|pvd)$|^log\.", name):
                 shutil.copy(os.path.join(source, name), self.folder)
         steps = steps or FEWER_STEPS.get(os.path.basename(source))
-        text = re.sub(STEPS, "run %d" % steps, self.text, flags=re.M) if steps else self.text
+        text = self.text
+        if steps:    # less than until the end of the input
+            text = re.sub(r"(mpm/dt .*) until \S+", r"\1", re.sub(STEPS, "run %d" % steps, text, flags=re.M))
         with open(os.path.join(self.folder, os.path.basename(path)), "w") as file:
             file.write(re.sub(r"^run\s", "thermo_modify format float %.15g\nrun ", text, flags=re.M))
         arguments = coarse_arguments(path) if coarse else []

@@ -341,7 +341,7 @@ SERIAL_PARAMETER_TEST(WallThatMoves, HeatsAlike, const char *,
                 RELATIVE - FRICTION * WEIGHT, 0.01);
     EXPECT_NEAR(measured(what + "heat over energy of the relative motion",
                          e[17] / (0.5 * m * (RELATIVE * RELATIVE - end * end))),
-                1.0, 0.005);
+                1.0, 0.01);
     if (heat > 0.0) EXPECT_NEAR(e[17] / heat, 1.0, 1e-9);
     heat = e[17];
     EXPECT_NEAR(e[14] / e[17], 1.0, 1e-11);    // what points have got

@@ -153,7 +153,7 @@ TEST(Stages, AreEnough)
   const double limit = 0.98 * 2.0 / (6.0 * 400.0);    // explicit
   EXPECT_NEAR(run.lmp->update->dt / (0.9 * limit * 7.0), 1.0, 3e-6);
   run.commands(strprintf("unfix mpm\ntimestep %g\n", 7.2 * limit));
-  expect_error(run, "run 1\n", "conduction of heat");
+  expect_error(run, "run 1\n", "of fix mpm/heat heat");
 }
 
 // A slab that is cooled by convection: T(0), T(1) for Bi = 1 at t = 0.1, 0.5, 1, and Bi = 0.1, 10

@@ -759,6 +759,24 @@ TEST(Slump, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
     }
 }
 
+// a wall that holds the soil and not the water at a node changes what drag does there: the balance of
+// energy has this, also where bodies begin inside of a wall
+SERIAL_TEST(Slump, LedgerHasDragAtWalls)
+{
+  const std::string slip = "fix floor all mpm/boundary ylo slip\n";
+  for (const char *wall : {"separate", "separate friction 0.3", "slip"}) {
+    Scene run(slump(2, "transfer apic") +
+              replaced(stuff, slip,
+                       std::string("region low block INF INF INF 1.3 INF INF\n"
+                                   "fix low all mpm/boundary region low ") +
+                           wall + "\n" + slip) +
+              "velocity all set 0.6 -0.4 0\nrun 40\n");
+    const double *const e = run.compute_vector();
+    EXPECT_GT(run.fix("mix")->compute_scalar(), 1.0e-4);
+    EXPECT_LT(fabs(measured("residual", e[10] / e[0])), 1.0e-12) << wall;
+  }
+}
+
 TEST(Slump, IsTheSameWithBalance)
 {
   OnRanks run(slump(2) + stuff, "run 80\n", "comm_style tiled\nfix lb all balance 20 1.0 rcb\n");

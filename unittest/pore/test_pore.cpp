@@ -820,5 +820,5 @@ SERIAL_TEST(BadInput, IsRefused)
        {std::pair{"shape linear", "use shape quadratic"}, std::pair{"frame total", "frame updated"},
         std::pair{"scheme musl", "use scheme usl"}, std::pair{"locking pressure", "locking none"}})
     expect_error(replaced(scene, "MPM_OPTIONS", options) + water + soil + "\nrun 1\n", remedy);
-  expect_error(plain + water + "soil m 0.4 constant 10 stages 3\nrun 1\n", "other physics");
+  expect_error(plain + water + "soil m 0.4 constant 10 stages 3\nrun 1\n", "fix mpm/pore water");
 }

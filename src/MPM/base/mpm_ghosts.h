@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_GHOSTS_H
 #define LMP_MPM_GHOSTS_H
 
+#include "atom.h"
 #include "comm.h"
 #include "force.h"
 #include "input.h"
@@ -26,20 +27,24 @@ namespace LAMMPS_NS {
 inline void need_ghosts_within(LAMMPS *lmp, double distance)
 {
   auto *const comm = lmp->comm;
-  const auto *const neighbor = lmp->neighbor;
+  auto *const neighbor = lmp->neighbor;
+  // a cutoff that is less than that of a pair style is a warning of LAMMPS
+  const auto *const pair = lmp->force->pair;
+  const bool is_largest = !pair || distance > pair->cutforce + neighbor->skin;
   if (comm->mode == Comm::SINGLE) {
-    // a cutoff that is less than that of a pair style is a warning of LAMMPS
-    const auto *const pair = lmp->force->pair;
-    if (!pair || distance > pair->cutforce + neighbor->skin)
-      comm->cutghostuser = std::max(comm->cutghostuser, distance);
+    if (is_largest) comm->cutghostuser = std::max(comm->cutghostuser, distance);
     return;
   }
-  // in mode multi each collection of types has a cutoff of its own
+  // in mode multi each collection of types has a cutoff of its own; there are none yet where the
+  // input has chosen the mode before it created the box, and then one for each type
+  if (neighbor->ncollections == 0) neighbor->ncollections = lmp->atom->ntypes;
+  const double before = comm->cutghostuser;
   for (int k = 0; k < neighbor->ncollections; k++) {
     const bool known = comm->cutusermulti && comm->ncollections_cutoff == neighbor->ncollections;
     if (!known || comm->cutusermulti[k] < distance)
       lmp->input->one(fmt::format("comm_modify cutoff/multi {} {:.17g}", k + 1, distance));
   }
+  if (!is_largest) comm->cutghostuser = before;
 }
 
 }    // namespace LAMMPS_NS

@@ -34,7 +34,8 @@ double LAMMPS_NS::image_shift(const Domain &domain, const Region &region, int d)
     hi += moved;
   }
   const double length = domain.prd[d], least = 1.0e-6 * length;
-  const bool below = lo<domain.boxlo[d] - least, above = hi> domain.boxhi[d] + least;
+  const bool below = lo < domain.boxlo[d] - least;
+  const bool above = hi > domain.boxhi[d] + least;
   // one that is as long as the box needs no images, and INF means the face of the box
   if (below == above || hi - lo > length - least || lo < -INFINITE || hi > INFINITE ||
       hi < domain.boxlo[d] || lo > domain.boxhi[d])

@@ -241,20 +241,12 @@ double *MPMLedger::impulse(const double *record)
 
 void MPMLedger::note_push(const double *record, const double *change, const double *change_old)
 {
-  double both[3] = {0.0, 0.0, 0.0}, *const earlier = impulse(record);
-  for (int d = 0; d < field.lattice.dim; d++)
-    both[d] = change[d] + (change_old ? change_old[d] : 0.0);
-  note_change(record, both);
-  for (int d = 0; d < field.lattice.dim; d++)
-    earlier[d] += record[3] * (change[d] - (change_old ? change_old[d] : 0.0));
-}
-
-void MPMLedger::note_change(const double *record, const double *change)
-{
-  if (impulses.empty()) return;
-  const double *const earlier = impulse(record);
-  double met = 0.0;
-  for (int d = 0; d < field.lattice.dim; d++) met += 0.5 * earlier[d] * change[d];
+  double *const earlier = impulse(record), met = 0.0;
+  for (int d = 0; d < field.lattice.dim; d++) {
+    const double with = change_old ? change_old[d] : 0.0;
+    met += 0.5 * earlier[d] * (change[d] + with);
+    earlier[d] += record[3] * (change[d] - with);
+  }
   transfer += met * force->mvv2e;
 }
 

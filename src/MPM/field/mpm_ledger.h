@@ -84,8 +84,6 @@ class MPMLedger : protected Pointers, public MPMEnergies {
    *  The impulse is the mass of the node times the difference of change and change_old. change_old:
    *  of the old velocity; null: none. */
   void note_push(const double *record, const double *change, const double *change_old = nullptr);
-  /** The same for a change whose impulse is counted later, with the final velocities. */
-  void note_change(const double *record, const double *change);
   /** Counts the change of all nodes from these velocities [node][3] to those of the records, which
    *  are due to further terms of a series. */
   void count_series(const std::vector<double> &velocities);

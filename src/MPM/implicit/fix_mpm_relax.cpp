@@ -44,6 +44,7 @@ using namespace MPM_NS;
 using Data = MPMStageData;    // what stages read and write
 
 static constexpr double UNKNOWN = std::numeric_limits<double>::infinity();
+static constexpr double ROUND_OFF = 1.0e-13;    // of changes of velocities in a step
 
 /* ----------------------------------------------------------------------
    fix ID all mpm/relax TOLERANCE keyword value ...
@@ -155,33 +156,38 @@ void FixMPMRelax::look()
 {
   const bool starts = may_start_by_half && damping.starts_by_half();
   const bool looks = std::fmod(damping.nsteps, look_every) == 0.0;
-  double mine[3] = {0.0, 0.0, 0.0}, all[3];    // energy, forces, forces of stress
+  // energy, forces, forces of stress, and those that would stop everything in a step
+  double mine[4] = {0.0, 0.0, 0.0, 0.0}, all[4];
   for (auto *field : fields) {
     Grid &grid = field->grid;
     const double *record = grid.nodes();
-    double energy = 0.0, forces = 0.0;
+    double energy = 0.0, forces = 0.0, momenta = 0.0;
     for (const auto &block : grid.blocks)
       for (int n = 0; n < NODES_PER_BLOCK; n++, record += 8) {
         if (!(block.owned >> n & 1) || !(record[3] > 0.0)) continue;
-        double square = 0.0;
+        double square = 0.0, speed = 0.0;
         for (int d = 0; d < 3; d++) {
           const double change = record[d] - record[4 + d];
-          energy += 0.5 * record[3] * record[d] * record[d];
+          speed += record[d] * record[d];
           square += change * change;
         }
+        energy += 0.5 * record[3] * speed;
         forces += record[3] * sqrt(square);
+        momenta += record[3] * sqrt(speed);
       }
     mine[0] += energy * force->mvv2e;
     mine[1] += forces / (field->step_dt() * force->ftm2v);
+    mine[3] += momenta / (field->step_dt() * force->ftm2v);
   }
   if (looks) mine[2] = force_of_stress();
-  MPI_Allreduce(mine, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
   falls = damping.advance(all[0]) || state == LAST_STEP;
   unbalanced = all[1];
   if (starts) start_by_half();
   if (!looks) return;
   carried = all[2];
-  ratio = unbalanced == 0.0 ? 0.0 : unbalanced / carried;
+  // what round-off does to the velocities of a body in free flight is no force
+  ratio = unbalanced <= ROUND_OFF * all[3] ? 0.0 : unbalanced / carried;
   // forces that this brings are not there yet
   for (const auto *field : fields)
     if (field->frame->strains_on_average()) ratio = UNKNOWN;

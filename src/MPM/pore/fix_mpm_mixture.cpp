@@ -161,10 +161,15 @@ void FixMPMMixture::add_stages(MPMPlan &plan, MPMPlan::Place place)
         {Data::NODES, Data::OWN}, [this]() {
           mixture.share_pressure();
         });
-  if (place == MPMPlan::AFTER_SOLVE)
-    plan.together("work in the mixture", {Data::NODES, Data::BLOCKS, Data::OWN},
-                  {Data::NODES, Data::OWN}, [this]() {
+  // before the energy of nodes is found
+  if (place == MPMPlan::AFTER_ACTIONS)
+    plan.together("drag at walls", {Data::NODES, Data::BLOCKS, Data::OWN}, {Data::NODES, Data::OWN},
+                  [this]() {
                     mixture.correct_drag_at_walls();
+                  });
+  if (place == MPMPlan::AFTER_SOLVE)
+    plan.together("work in the mixture", {Data::NODES, Data::BLOCKS, Data::OWN}, {Data::OWN},
+                  [this]() {
                     mixture.account_for_work();
                   });
   if (place == MPMPlan::BEFORE_STRAIN)

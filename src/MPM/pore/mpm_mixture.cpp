@@ -533,15 +533,12 @@ void MPMMixture::correct_drag_at_walls()
     const double gain = dot(normal, node.free_water) - dot(normal, at_soil) - before;
     const double x = dt_last * node.rate / at_water[3];
     const double left = exp(-x) * before + mean_decay(x) * gain;
-    const double faster = dot(normal, at_soil) + left - dot(normal, at_water);
-    double change[3] = {0.0, 0.0, 0.0};
+    const double change = dot(normal, at_soil) + left - dot(normal, at_water);
     for (int d = 0; d < soil.field->lattice.dim; d++) {
-      change[d] = faster * normal[d];
-      reaction[d] = at_water[3] * change[d];
-      at_water[d] += change[d];
+      reaction[d] = at_water[3] * change * normal[d];
+      at_water[d] += change * normal[d];
       node.impulse[d] -= reaction[d];
     }
-    if (node.owned && water.field->ledger.on) water.field->ledger.note_change(at_water, change);
     push.wall->add_reaction(*soil.field, node.soil, reaction);
   }
 }
