@@ -269,14 +269,13 @@ SERIAL_TEST(Forces, HaveUnits)
 SERIAL_TEST(Forces, AreZeroInFreeFlight)
 {
   Scene run(plane("lj", "f p", "0 14 0 12", 1, 0.3) +
-            "region body block 2 6 2 6 INF INF\ncreate_points 1 region body spacing 0.5\n"
-            "velocity all set 0.6 0.4 0\nfix grid all mpm 1.0\n"
-            "fix m all mpm/material density 2.0 linear 33.0 0.3\n"
-            "fix rest all mpm/relax 1e-6 every 3 stop no\ntimestep 0.05\nrun 2\n");
+            "region body block 2 6 2 6 INF INF\n"
+            "create_points 1 region body spacing 0.5 jitter 0.2 4711\nvelocity all set 0.6 0.4 0\n"
+            "fix grid all mpm 1.0\nfix m all mpm/material density 2.0 linear 33.0 0.3\n"
+            "timestep 0.05\nrun 60\nfix rest all mpm/relax 1e-6 stop no\nrun 1\n");
   auto *const fix = run.fix("rest");
-  EXPECT_EQ(fix->compute_vector(3), 0.0);
-  run.commands("run 4\n");
-  EXPECT_EQ(fix->compute_vector(3), 1.0);
+  EXPECT_GT(fix->compute_vector(1), 0.0);    // stress of round-off
+  EXPECT_EQ(fix->compute_vector(3), 1.0);    // balanced, and put to rest
 }
 
 // a run goes on with a new load, and does not stop when it shall not
