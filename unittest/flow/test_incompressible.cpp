@@ -970,7 +970,7 @@ TEST(Tank, FirstTimeStep)
 }
 
 // what falls goes no farther than a share of a cell in a step, by its speed and its acceleration
-TEST(Block, StepOfAFall)
+SERIAL_TEST(Block, StepOfAFall)
 {
   constexpr double G = 0.25, SHARE = 0.7;
   Scene run(plane("si", "f f", "0 8 0 20", 1, 0.3) +

@@ -88,7 +88,17 @@ void MPMSetupChecks::new_points()
 {
   if (update->ntimestep != 0) return;    // later, points may be as hot as they have become
   doubts.check_temperatures(field);
-  doubts.check_weight(field);
+}
+
+void MPMSetupChecks::look()
+{
+  uncoupled.look();
+  doubts.look_at_regions();
+  // gravity by variables is not known before it has acted
+  if (weighed) return;
+  weighed = true;
+  if (update->firststep != 0) return;    // later, points may be anywhere
+  for (const auto *one : MPMField::all(lmp)) doubts.check_weight(*one);
 }
 
 void MPMSetupChecks::coupling()

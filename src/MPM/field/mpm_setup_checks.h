@@ -54,11 +54,7 @@ class MPMSetupChecks : protected Pointers {
   MPMUncoupled uncoupled;    ///< of all fields
 
   /** Once in each step: what may become wrong in it. */
-  void look()
-  {
-    uncoupled.look();
-    doubts.look_at_regions();
-  }
+  void look();
 
   /** Stops with an error if points that meet grains have no radius or one that is too large, or are
    *  rings around an axis of symmetry. */
@@ -67,7 +63,8 @@ class MPMSetupChecks : protected Pointers {
  private:
   MPMField &field;
   MPMDoubts doubts;
-  bool warned_of_locking = false, warned_of_liquid = false, told_of_columns = false;
+  bool warned_of_locking = false, warned_of_liquid = false, told_of_columns = false,
+       weighed = false;
   std::set<std::string> told_of;    // IDs of computes
 
   /** Is another fix an integrator of points of the field, too? */

@@ -174,6 +174,14 @@ void MPMFlowChecks::check_gas()
   warned_of_regions = true;
 }
 
+void MPMFlowChecks::look()
+{
+  uncoupled.look();
+  doubts.look_at_regions();
+  if (!has_gravity) MPMGravity{lmp};    // has it a direction?
+  has_gravity = true;
+}
+
 void MPMFlowChecks::check_others(const Fix &mine)
 {
   for (const auto *other : modify->get_fix_by_style("^mpm/incompressible$"))
@@ -182,7 +190,6 @@ void MPMFlowChecks::check_others(const Fix &mine)
                  "Fluids of fixes {} and {} (style {}) would go through each other: give their "
                  "points to one of these fixes",
                  id, other->id, STYLE);
-  MPMGravity{lmp};    // has it a direction?
   uncoupled.begin_run(mine);
   doubts.check_regions();
   if (modify->get_fix_by_style("^mpm$").empty())    // fix mpm would warn of these itself

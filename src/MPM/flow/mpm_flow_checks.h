@@ -46,11 +46,7 @@ class MPMFlowChecks : protected Pointers {
   void check_time_step();
 
   /** Once in each step: what may become wrong in it. */
-  void look()
-  {
-    uncoupled.look();
-    doubts.look_at_regions();
-  }
+  void look();
 
   MPMUncoupled uncoupled;    ///< other matter in the same box
 
@@ -61,7 +57,7 @@ class MPMFlowChecks : protected Pointers {
   const std::string id, who;
   MPMDoubts doubts;
   bool warned_of_size = false, warned_of_liquids = false, warned_of_regions = false,
-       warned_of_interfaces = false, warned_of_laws = false;
+       warned_of_interfaces = false, warned_of_laws = false, has_gravity = false;
 
   double density(int i) const;
   void check_liquids();
