@@ -48,8 +48,7 @@ static constexpr double MOST_SPREAD = 0.05;
 static const char GAS_NEEDS[] =
     "Use four points per cell and axis, shape cubic, or cpdi, and transfer apic; a smaller spacing "
     "does not help. What is not meant to expand needs walls around it, or the pressure outside: "
-    "fix "
-    "mpm/traction free pressure";
+    "fix mpm/traction free pressure";
 
 // steps of the cycle from one look to the next, with and without a correction, and those of the
 // mean that a warning is about: waves and splashes pass in less
