@@ -203,7 +203,7 @@ void run(benchmark::State &state, What what, const MPMKernels *table, int dim, S
         p2g(s.blocks[i], &boxes[6 * i]);
         k.flush(to_nodes, nodes.data(), s.blocks[i].slot, &boxes[6 * i]);
       }
-      table->solve_nodes(nodes.data(), 64 * s.nblocks, k.nreal, step.dt);
+      table->solve_nodes(nodes.data(), 64 * s.nblocks, k.nreal, step.dt, MPM_NS::LEAST_MASS);
       for (size_t i = 0; i < s.blocks.size(); i++) {
         k.load(to_points, nodes.data(), s.blocks[i].slot, &boxes[6 * i]);
         g2p(s.blocks[i]);

@@ -152,12 +152,24 @@ def line_of(text, at):
     return text.count("\n", 0, at)
 
 
+def what_is(name, line, begin, end, new):
+    """the change and the line that it gives"""
+    return "%s: %s" % (name, (line[:begin] + new + line[end:]).strip())
+
+
+def changes(sources):
+    """(file, what is changed) of all mistakes that can be drawn"""
+    return {(file, what_is(name, text.rstrip("\n"), begin, end, new))
+            for file, _, text, here in places(sources) for name, begin, end, new in here}
+
+
 class RandomMutant:
     """name, number from 1, file in src/MPM, what it is; in the whole file: the first and the last line of its expression
     (from 0), and the replacements (begin, end, text)"""
 
     def __init__(self, name, number, file, told):
         self.name, self.number, self.file, self.told = name, number, file, told
+        self.place = file, told.partition(" ")[2]    # whatever its line is
         self.lines, self.edits = (0, 0), []
 
 
@@ -173,8 +185,8 @@ def draw(sources, seed):
             text = source.read()
         start = sum(len(part) for part in text.splitlines(True)[:line])
         old = text[start:].partition("\n")[0]
-        mutant = RandomMutant("random-%d-%d" % (seed, number), number, file, "%s:%d %s: %s" % (
-            file, line + 1, name, (old[:begin] + new + old[end:]).strip()))
+        mutant = RandomMutant("random-%d-%d" % (seed, number), number, file, "%s:%d %s" % (
+            file, line + 1, what_is(name, old, begin, end, new)))
         code = masked(text)
         edit = choice(text, code, name, start + begin, start + end, new, number)
         if edit:

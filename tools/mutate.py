@@ -14,7 +14,7 @@ tools/build.sh.  Kernels and laws are compiled and run for the baseline instruct
   --random N     instead of those of the list: N mistakes anywhere in src/MPM, all of them compiled once in a copy of the
                  source tree, where each is a choice that is made while the program runs (mutants_random.py).  One run of
                  the suite of tools/test.sh tells which cases reach which mistake; these are tried, the short ones
-                 first, until one fails
+                 first, until one fails.  Those in mutants_equivalent.txt, which change nothing that one can see, are named
   --tree FOLDER  the copy of --random (default: BUILD/random)
   --jobs N       mutants at a time (default: MPM_JOBS, or all cores)
   --sample N     only so many of them, drawn at random
@@ -49,7 +49,8 @@ SOURCES = os.path.join(ROOT, "src", "MPM")
 BUILD = os.path.abspath(os.environ.get("MPM_BUILD_DIR") or
                         os.path.join(ROOT, "build"))
 LIBRARY = os.path.join(BUILD, "python", "lammps", "liblammps.so")    # target mpm_python
-KILLED, SURVIVED, BROKEN, STALE = "killed", "survived", "does not compile", "stale"
+EQUIVALENTS = os.path.join(ROOT, "tools", "mutants_equivalent.txt")
+KILLED, SURVIVED, BROKEN, STALE, EQUIVALENT = "killed", "survived", "does not compile", "stale", "equivalent"
 
 
 class Mutant:
@@ -368,6 +369,9 @@ def main():
     for mutant in stale:
         print("%s: the text is not exactly once in %s" % (mutant.name, mutant.file))
     if options.check or not mutants:
+        for file, change in sorted(set(read_equivalents()) - mutants_random.changes(SOURCES)):
+            stale.append(change)
+            print("mutants_equivalent.txt: %s has no %s" % (file, change))
         lost = [(mutant, test) for mutant in mutants for test in mutant.tests if not_in_test(*test)]
         for mutant, test in lost:
             print("%s: no %s in the source of %s" % (mutant.name, ", ".join(not_in_test(*test)), test[0]))
@@ -400,14 +404,15 @@ def report(mutants, tried):
     count = results.count(KILLED) + results.count(SURVIVED)
     print("%d of %d mutants killed (%.0f %%), %d survived, %d do not compile, %d stale" % (
         results.count(KILLED), count, 100.0 * results.count(KILLED) / max(count, 1),
-        results.count(SURVIVED), results.count(BROKEN), results.count(STALE)))
-    return 0 if results.count(KILLED) == len(results) else 1
+        results.count(SURVIVED), results.count(BROKEN), results.count(STALE)) +
+          (", %d equivalent" % results.count(EQUIVALENT) if EQUIVALENT in results else ""))
+    return 0 if results.count(KILLED) + results.count(EQUIVALENT) == len(results) else 1
 
 
 # ---------------------------------------------------------------- mutants at random places
 
 NOT_OF_THE_PROGRAM = {"build", "plugin", "fuzz", "sanitize"}    # labels of tests that compile, or cannot fail by a mutant
-LONGEST = 300    # seconds that the cases take that a mutant is tried with
+LONGEST = 100    # seconds that the cases take that a mutant is tried with
 
 
 class Case:
@@ -415,6 +420,16 @@ class Case:
 
     def __init__(self, test, name, seconds, reached):
         self.test, self.name, self.seconds, self.reached = test, name, seconds, set(reached)
+
+
+def read_equivalents(path=EQUIVALENTS):
+    """(file, what is changed) -> reason"""
+    with open(path, encoding="utf-8") as file:
+        lines = [line.rstrip("\n").split("\t") for line in file if line.strip() and not line.startswith("#")]
+    for line in lines:
+        if len(line) != 3:
+            sys.exit("%s: not a file, a change, and a reason: %s" % (path, " ".join(line)))
+    return {(file, change): reason for file, change, reason in lines}
 
 
 def copy_tree(tree, changed):
@@ -518,9 +533,11 @@ def cases_of(tests, test, folder, known):
             if case["result"] == "COMPLETED" and not case.get("failures")]
 
 
-def try_random(tests, mutant, cases, folder):
+def try_random(tests, mutant, cases, folder, equivalents):
     """verdict, the cases that have killed it, time"""
     start = time.time()
+    if mutant.place in equivalents:
+        return EQUIVALENT, equivalents[mutant.place], 0.0
     cases = sorted((case for case in cases if mutant.number in case.reached), key=lambda case: case.seconds)
     seconds, tried, most = 0.0, 0, 1.0
     while tried < len(cases) and seconds < LONGEST:
@@ -546,6 +563,7 @@ def try_random(tests, mutant, cases, folder):
 
 def run_random(options):
     os.environ["MPM_QUICK"] = "1"    # as in tools/test.sh
+    equivalents = read_equivalents()
     tree = os.path.abspath(options.tree or os.path.join(BUILD, "random"))
     mutants, drawn = build_random(tree, options)
     print("%d mutants of %d places are choices in one program" % (len(mutants), drawn), flush=True)
@@ -562,7 +580,7 @@ def run_random(options):
         cases = sum(pool.map(lambda test: cases_of(tests, test, folder, options.no_build), wanted), [])
         print("%d cases pass without mutants, in %.0f s" % (len(cases), sum(case.seconds for case in cases)), flush=True)
         mutants = chosen(mutants, options.patterns)
-        return report(mutants, pool.map(lambda mutant: try_random(tests, mutant, cases, folder), mutants))
+        return report(mutants, pool.map(lambda mutant: try_random(tests, mutant, cases, folder, equivalents), mutants))
 
 
 if __name__ == "__main__":

@@ -62,7 +62,7 @@ TEST(BernsteinKernels, AgreeWithReference)
                 kernels[k]->p2g(rows, step, 0, n, base, tile[k].data(), box[k]);
                 const Reals sums = tile[k];
                 table->solve_nodes(tile[k].data(), MAX_TILE_NODES * 8 / fast.nreal, fast.nreal,
-                                   step.dt);
+                                   step.dt, MPM_NS::LEAST_MASS);
                 kernels[k]->g2p(rows, step, 0, n, base, tile[k].data(), L[k].data());
                 tile[k] = sums;
                 out[k] = xk;

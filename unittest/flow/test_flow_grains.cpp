@@ -393,19 +393,28 @@ TEST(Suspension, RanksAndRestart)
   }
 }
 
-// A rank that has grains and no points knows the fluid around them
+// A rank that has grains and no points knows the fluid around them, also where they get between two
+// searches for neighbors
 TEST(Grain, AreSeenByOtherRanks)
 {
-  const auto scene = replaced(full(2, "0 4 0 32", "p f",
-                                   "create_atoms 2 single 1.3 8.2 0\n"
-                                   "set type 2 diameter 0.2 density/disc 3.0\n"),
-                              "create_points 1 box",
-                              "region low block INF INF 0 8 INF INF\ncreate_points 1 region low") +
-      flow("tolerance 1e-13", "0.1 gravity 0 -1 0") + "timestep 0.01\n";
-  OnRanks run(scene, "run 2\n", "processors 1 * 1\n");
-  EXPECT_GT(run.serial.fix("drag")->compute_vector(4), 0.005);
-  EXPECT_NEAR(run.parallel.fix("drag")->compute_vector(4),
-              run.serial.fix("drag")->compute_vector(4), 1e-13);
+  for (const bool falls : {false, true}) {
+    const auto scene =
+        replaced(full(2, "0 4 0 32", "p f",
+                      strprintf("create_atoms 2 single 1.3 %g 0\n", falls ? 14.2 : 8.2) +
+                          "set type 2 diameter 0.2 density/disc 3.0\n"),
+                 "create_points 1 box",
+                 "region low block INF INF 0 8 INF INF\ncreate_points 1 region low") +
+        flow("tolerance 1e-13", "0.1 gravity 0 -1 0") +
+        (falls ? discs +
+                 "neigh_modify delay 1000 every 1000 check no\nvelocity grains set 0 -60 0 units "
+                 "box\n"
+               : "") +
+        "timestep 0.01\n";
+    OnRanks run(scene, falls ? "run 11\n" : "run 2\n", "processors 1 * 1\n");
+    const double serial = run.serial.fix("drag")->compute_vector(4);
+    EXPECT_GT(std::fabs(serial), 0.005);
+    EXPECT_NEAR(run.parallel.fix("drag")->compute_vector(4), serial, 1e-13);
+  }
 }
 
 TEST(Suspension, NeedsNoPointsInNeighborLists)

@@ -350,7 +350,8 @@ SERIAL_TEST(FlowSolids, BlockInAir)
             "displace_atoms all move 0.3 0.5 0\nfix m all " +
             neohookean(1.0, 1.0) +
             "fix w all mpm/incompressible 1 1 solid all\nfix g all gravity 0.02 vector 0 0 -1\n"
-            "timestep 0.15\nvariable z equal xcm(all,z)\n");
+            "compute c all mpm/atom wavespeed\ncompute least all reduce min c_c\n"
+            "thermo_style custom step c_least\ntimestep 0.15\nvariable z equal xcm(all,z)\n");
   double sum = 0.0;
   int steps = 0;
   run.each_step([&](double **) {
@@ -359,6 +360,8 @@ SERIAL_TEST(FlowSolids, BlockInAir)
   });
   run.commands("run 154\n");    // two periods of 4 H/(3 G/rho)^(1/2)
   EXPECT_NEAR(measured("sinks over theory", (2.5 - sum / steps) / (0.02 * 25.0 / 9.0)), 1.0, 0.03);
+  const double modulus = 2.998 * 0.501 / (1.499 * 0.002);    // E (1-nu)/((1+nu) (1-2 nu))
+  EXPECT_NEAR(measured("slowest wave", run.evaluate("c_least") / std::sqrt(modulus)), 1.0, 1e-6);
 }
 
 // a stream with vortices and a heavy disk: momentum is that of points that fill cells evenly

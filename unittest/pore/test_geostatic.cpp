@@ -74,6 +74,15 @@ SERIAL_TEST(Geostatic, SoilsAndUnits)
   }
 }
 
+// LAMMPS evaluates the variables of fix gravity in a run, which is later
+SERIAL_TEST(Geostatic, GravityByAVariable)
+{
+  const auto scene = replaced(ground(2, 20, SOIL, 0.1), "gravity 9.81", "gravity v_g");
+  Scene run("variable g equal 9.81*exp(-step)\n" + scene +
+            "mpm_geostatic grid 0.5\ntimestep 5e-5\nvariable g equal 9.81\nrun 1\n");
+  EXPECT_LT(measured("force over weight", fall(run, 5e-5)), 1e-10);
+}
+
 // points with nodes off the face do not end there, and a stress next to the face that is not the
 // weight above balances nodes: this is told, but not of ground that ends at the face
 SERIAL_TEST(Geostatic, GapsAreTold)

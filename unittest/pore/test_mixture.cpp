@@ -257,8 +257,13 @@ TEST(Geostatic, StaysAtRest)
         for (const double height : {0.5, 0.9}) {
           if (dim == 3 && (options[0] != 't' || height < 0.6)) continue;
           if (offset > 0.0 && strcmp(options, "shape cubic") == 0) continue;
-          Scene run(bed(dim, 0.05, height, options, offset) + "mpm_geostatic s 0.4\n" +
-                    strprintf("timestep %g\nrun 1\n", dt));
+          auto scene = bed(dim, 0.05, height, options, offset);
+          if (offset > 0.0 && height > 0.5) {    // points may be in any order
+            const auto at = scene.find("region ground"), next = scene.find("region above");
+            const auto bed = scene.substr(at, next - at);
+            scene = replaced(replaced(scene, bed, ""), "fix ms soil", bed + "fix ms soil");
+          }
+          Scene run(scene + "mpm_geostatic s 0.4\n" + strprintf("timestep %g\nrun 1\n", dt));
           double most[3] = {0.0, 0.0, 0.0};
           for (const auto &s : run.gather())
             for (int d = 0; d < dim; d++)

@@ -312,17 +312,25 @@ SERIAL_TEST(BadInput, IsRefused)
   EXPECT_EQ(times_said(skin + "fix h all mpm/heat ylo flux 1\nrun 2\n", "end within"), 1);
   EXPECT_EQ(times_said(skin + "fix h all mpm/heat yhi flux 1\nrun 2\n", "end within"), 0);
   // an interface of materials at the rim, and one a coarse cell away from it
-  const auto layers = [](const char *fine) {
+  const auto layers = [](const char *fine, int axis = 0) {
+    const auto block = [axis](const char *along, const char *across) {
+      std::string text = "block";
+      for (int d = 0; d < 3; d++) text += std::string(" ") + (d == axis ? along : across);
+      return text;
+    };
+    const auto all = block("0 12", "0 4");
     return times_said(
-        plane("lj", "f p", "0 12 0 4", 2, 0.2) +
-            lattices(2, "quadratic", "", {"block 0 12 0 4 INF INF", fine}) +
-            "region A block 0 6 INF INF INF INF\nregion B block 6 12 INF INF INF INF\n"
+        space("lj", "f f f", all.substr(6), 2, 0.2) +
+            lattices(3, "quadratic", "", {all, block(fine, "0 4")}) + "region A " +
+            block("0 6", "INF INF") + "\nregion B " + block("6 12", "INF INF") +
+            "\n"
             "group A region A\ngroup B region B\n"
             "fix m A mpm/material density 1 eos linear 1e-6 thermal conducting 1 2 1\n"
             "fix n B mpm/material density 1 eos linear 1e-6 thermal conducting 1 2 10\n"
             "fix h all mpm/heat\nrun 0\n",
         "let one lattice go on");
   };
-  EXPECT_EQ(layers("block 6 12 0 4 INF INF"), 1);
-  EXPECT_EQ(layers("block 5 12 0 4 INF INF"), 0);
+  for (const int axis : {0, 1, 2})
+    for (const char *fine : {"0 6", "6 12"}) EXPECT_EQ(layers(fine, axis), 1) << fine << axis;
+  EXPECT_EQ(layers("5 12"), 0);
 }

@@ -67,6 +67,21 @@ TEST(CellOperator, IsTheEquations)
   }
 }
 
+// A sweep comes to each cell once: all have a color, that of the sum of their index.
+TEST(CellGraph, EachCellHasAColor)
+{
+  CellGraph graph;
+  for (int n = 0; n < 27; n++) {
+    for (const int i : {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}) graph.index.push_back(i);
+    graph.where.push_back(n);
+  }
+  graph.color();
+  EXPECT_EQ(graph.colored[0].size(), 13u);
+  EXPECT_EQ(graph.colored[1].size(), 14u);
+  for (const int color : {0, 1})
+    for (const int n : graph.colored[color]) EXPECT_EQ((n / 9 + n / 3 % 3 + n % 3 + 3) & 1, color);
+}
+
 // Conjugate gradients need a symmetric and positive definite preconditioner, also for odd periods.
 TEST(CellMultigrid, IsSymmetric)
 {

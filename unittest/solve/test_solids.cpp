@@ -448,6 +448,18 @@ TEST(EnvelopeFactors, PlanesOfCompactBodies)
   };
   check(14, 14, 14, 0.8);
   check(3, 40, 4, 1.2);
+  // planes are those across the longest axis, whichever it is
+  const auto memory = [&](int nx, int ny, int nz) {
+    std::vector<LatticeIndex> nodes;
+    const auto A = cells(nx, ny, nz, nodes);
+    EnvelopeFactors factors(nullptr, 100000000);
+    factors.set_places(nodes, 1);
+    EXPECT_TRUE(factors.compute(A));
+    return factors.memory_usage();
+  };
+  const double first = memory(16, 11, 8);
+  for (const double other : {memory(8, 16, 11), memory(11, 8, 16), memory(8, 11, 16)})
+    EXPECT_NEAR(other, first, 0.01 * first);
 }
 
 // Factors in single precision are those of a matrix that is near along every direction, soft ones,

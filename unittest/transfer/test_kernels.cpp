@@ -521,7 +521,7 @@ TEST_P(AffineKernels, FieldSurvivesTheRoundTrip)
   }
   Tile tile(dim, order, nreal);
   p2g(kernels.p2g_momentum, points, tile.real);
-  table->solve_nodes(tile.real, tile.nodes, nreal, points.step.dt);
+  table->solve_nodes(tile.real, tile.nodes, nreal, points.step.dt, MPM_NS::LEAST_MASS);
   const Tile exact = linear_field(points, a, B, a, B);
   const double size = 200.0 * points.step.h + 10.0;
   for (int n = 0; n < tile.nodes; n++) {
@@ -539,8 +539,8 @@ TEST_P(SplitKernels, EqualMerged)
   Tile tile_a(dim, order, 8), tile_b(dim, order, 4);
   p2g(kernels.p2g, a, tile_a.real);
   p2g(merged.p2g, b, tile_b.real);
-  table->solve_nodes(tile_a.real, tile_a.nodes, 8, a.step.dt);
-  table->solve_nodes(tile_b.real, tile_b.nodes, 4, b.step.dt);
+  table->solve_nodes(tile_a.real, tile_a.nodes, 8, a.step.dt, MPM_NS::LEAST_MASS);
+  table->solve_nodes(tile_b.real, tile_b.nodes, 4, b.step.dt, MPM_NS::LEAST_MASS);
   Reals La(a.nC * 150), Lb(a.nC * 150);
   g2p(kernels.g2p, a, tile_a.real, La.data());
   g2p(merged.g2p, b, tile_b.real, Lb.data());
@@ -756,7 +756,7 @@ TEST_P(Tables, SolveNodes)
       if (split) nodes[nreal * i + 7] = 0.0;
     }
     const Reals before = nodes;
-    table->solve_nodes(nodes.data(), n, nreal, dt);
+    table->solve_nodes(nodes.data(), n, nreal, dt, MPM_NS::LEAST_MASS);
     for (int i = 0; i < n; i++) {
       const double *p = &before[nreal * i], *v = &nodes[nreal * i], m = p[3];
       for (int a = 0; a < 3; a++) {

@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_GRAVITY_H
 #define LMP_MPM_GRAVITY_H
 
+#include "atom.h"
 #include "error.h"
 #include "fix.h"
 #include "lammps.h"
@@ -26,7 +27,8 @@ class MPMGravity {
  public:
   MPMGravity() = default;
   /** Of all groups. Stops with an error where one has no direction, as LAMMPS sees it. */
-  explicit MPMGravity(LAMMPS *lmp) : fixes(lmp->modify->get_fix_by_style("^gravity"))
+  explicit MPMGravity(LAMMPS *lmp) :
+      atom(lmp->atom), fixes(lmp->modify->get_fix_by_style("^gravity"))
   {
     double g[3];
     find(g);
@@ -38,7 +40,7 @@ class MPMGravity {
   }
   /** user: named in the error if a fix gravity has a group other than all. */
   MPMGravity(LAMMPS *lmp, const std::string &user) :
-      fixes(lmp->modify->get_fix_by_style("^gravity"))
+      atom(lmp->atom), fixes(lmp->modify->get_fix_by_style("^gravity"))
   {
     for (const auto *fix : fixes)
       if (fix->igroup != 0)
@@ -47,9 +49,10 @@ class MPMGravity {
                         fix->id);
   }
   bool empty() const { return fixes.empty(); }
-  /** The present force per mass [force/mass]. */
-  void find(double gravity[3]) const
+  /** The present force per mass [force/mass]. After init(); all ranks must call it. */
+  void find(double gravity[3])
   {
+    if (!evaluated) evaluate();
     std::fill_n(gravity, 3, 0.0);
     for (auto *fix : fixes) {
       int dim;
@@ -59,7 +62,21 @@ class MPMGravity {
   }
 
  private:
+  Atom *atom = nullptr;
   std::vector<Fix *> fixes;
+  bool evaluated = false;
+
+  /** LAMMPS evaluates the variables of fix gravity when it adds its forces, which may come later. */
+  void evaluate()
+  {
+    evaluated = true;
+    if (empty()) return;
+    const std::size_t n = 3 * (std::size_t) atom->nlocal;
+    double *const f = n ? &atom->f[0][0] : nullptr;
+    const std::vector<double> kept(f, f + n);
+    for (auto *fix : fixes) fix->post_force(0);
+    std::copy_n(kept.data(), n, f);
+  }
 };
 
 }    // namespace LAMMPS_NS

@@ -44,6 +44,8 @@ using namespace MPM_NS;
 
 // node numbers of an axis, and those of blocks, must fit into 21 bits with their sign
 static constexpr double MAX_NODE = 4.0e6;
+// mass of a node over that of a full cell; functions that end in its plane give it 1e-32 by round-off
+static constexpr double NEGLIGIBLE = 1.0e-20;
 
 static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMFieldOptions &options)
 {
@@ -150,6 +152,10 @@ void MPMField::init(MPMPlan *plan_of_all)
     refuse_other_integrators(lmp, fix);    // a second fix by mistake needs no material
     error->all(FLERR, "Fix mpm found no material: define one with fix mpm/material");
   }
+
+  double density = materials[0]->material->density();
+  for (const auto *one : materials) density = std::min(density, one->material->density());
+  least_node_mass = std::max(LEAST_MASS, NEGLIGIBLE * density * lattice.cell_volume());
 
   if (heating) heating->init();
 

@@ -72,6 +72,10 @@ class MPMField : protected Pointers {
   std::vector<MPMInternalForce *> elements;    ///< all of them, set in init()
   MPMPlan *plan = nullptr;                     ///< of all fields, set in init()
 
+  /** Nodes with no more than this mass are at rest: where functions end in a plane of nodes,
+   *  round-off decides whether these have a mass, which is of second order in it, and a force,
+   *  which is of first order. */
+  double least_node_mass = MPM_NS::LEAST_MASS;
   const MPM_NS::MPMKernels *kernels = nullptr;
   const MPM_NS::BatchKernels *batch_kernels = nullptr;
   MPM_NS::TransferKernels kernel;    ///< of the step

@@ -64,7 +64,8 @@ template <class Value> void MPMLocking::average_around_points(const Value &value
         pic.p2g_momentum(r, s, run.first, run.last, base, field.map->tile, box);
     });
     field.nodes.sum(work.nodes.data(), pic.nreal, 0, 4);
-    field.kernels->solve_nodes(work.nodes.data(), (int) field.grid.nnodes(), pic.nreal, 0.0);
+    field.kernels->solve_nodes(work.nodes.data(), (int) field.grid.nnodes(), pic.nreal, 0.0,
+                               LEAST_MASS);
     field.nodes.complete(work.nodes.data(), pic.nreal, 1);
     points_from(work.nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base) {
       if (run.material == material)

@@ -55,8 +55,7 @@ double MPMFlowPressure::aperture(int64_t cell, int axis) const
 /** Open share of a side of a cell, also of one in a wall of the box. */
 double MPMFlowPressure::aperture_of_side(const MPMFlowLattice::Cell &cell, int side) const
 {
-  const int64_t of = side % 2 ? cell.near[side] : cell.number;
-  return of < 0 ? 1.0 : aperture(of, side / 2);
+  return aperture(side % 2 ? cell.near[side] : cell.number, side / 2);
 }
 
 double MPMFlowPressure::density_in(const MPMFlowLattice::Cell &cell) const

@@ -434,7 +434,7 @@ void FixMPMPML::stretch_gradients(MPMField &field, int first, int n, double dt, 
     const double *const tau = field.points->tau[first + p];
     for (int j = 0; j < dim; j++) {
       const double d = row[DAMPING + j], a = d * dt;
-      const double share = a > 1.0e-8 ? -std::expm1(-a) / a : 1.0;
+      const double share = a > 0.0 ? -std::expm1(-a) / a : 1.0;
       for (int r = 0; r < dim; r++) {
         const int k = r + dim * j;
         const double stretched = share * (L[k] - d * gradient[k]);

@@ -79,14 +79,14 @@ void MPMStages::sum_nodes(MPMField &field, Content content)
 void MPMStages::momentum_equation(MPMField &field)
 {
   field.kernels->solve_nodes(field.grid.nodes(), (int) field.grid.nnodes(), field.kernel.nreal,
-                             field.step_dt());
+                             field.step_dt(), field.least_node_mass);
   if (field.ledger.on) field.ledger.nodes_solved();
 }
 
 void MPMStages::velocities(MPMField &field)
 {
-  field.kernels->solve_nodes(field.grid.nodes(), (int) field.grid.nnodes(), field.kernel.nreal,
-                             0.0);
+  field.kernels->solve_nodes(field.grid.nodes(), (int) field.grid.nnodes(), field.kernel.nreal, 0.0,
+                             field.least_node_mass);
 }
 
 void MPMStages::back_to_momentum(MPMField &field)

@@ -206,6 +206,8 @@ constexpr int poly_size(int dim)
   return dim == 3 ? 12 : 2;
 }
 
+constexpr double LEAST_MASS = 2.3e-308;    ///< the inverse of a smaller mass may overflow
+
 /** Kernel table of one instruction set. */
 struct MPMKernels {
   const char *isa;    ///< "reference", "baseline", "AVX2" or "AVX-512"
@@ -227,8 +229,8 @@ struct MPMKernels {
 
   /** v = p/m on n nodes, and the momentum equation.
    *  merged: (p,m) -> (p/m, m).  split: (p,m|f) -> ((p + dt f)/m, m | p/m).
-   *  A node without mass gets velocity 0. */
-  void (*solve_nodes)(double *nodes, int nnodes, int nreal, double dt);
+   *  A node with not more than the mass least gets velocity 0.  least: not below LEAST_MASS. */
+  void (*solve_nodes)(double *nodes, int nnodes, int nreal, double dt, double least);
 
   /** The table for this CPU, or the one that the name asks for (null when it cannot run here). */
   static const MPMKernels *select(const char *name = nullptr);

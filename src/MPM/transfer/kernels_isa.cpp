@@ -30,15 +30,13 @@ using namespace MPM_NS;
 
 namespace {
 
-constexpr double SMALLEST = 2.3e-308;    ///< the inverse of a smaller mass may overflow
-
-void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
+void solve_nodes(double *nodes, int nnodes, int nreal, double dt, double least)
 {
   double *const end = nodes + static_cast<std::ptrdiff_t>(nreal) * nnodes;
   for (double *node = nodes; node < end; node += nreal) {
     const Vec<4> p = Vec<4>::load(node);
     const double m = node[3];
-    const double inv_m = m > SMALLEST ? 1.0 / m : 0.0;
+    const double inv_m = m > least ? 1.0 / m : 0.0;
     const Vec<4> v = inv_m * p;
     if (nreal == 4) {
       v.store(node);

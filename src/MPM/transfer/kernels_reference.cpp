@@ -11,8 +11,6 @@
 
 #include "transfer/stencil.h"
 
-#include <limits>
-
 namespace {
 
 /** What is the same for all points, and no constant: that would be four times as much to
@@ -243,12 +241,12 @@ void poly_g2p(const PointRows &points, double *Q, const TransferStep &step, int 
   }
 }
 
-void solve_nodes(double *nodes, int nnodes, int nreal, double dt)
+void solve_nodes(double *nodes, int nnodes, int nreal, double dt, double least)
 {
   for (int n = 0; n < nnodes; n++) {
     double *node = nodes + static_cast<std::ptrdiff_t>(nreal) * n;
     const double m = node[3];
-    const bool has_mass = m > std::numeric_limits<double>::min();
+    const bool has_mass = m > least;
     for (int i = 0; i < 3; i++) {
       const double v = has_mass ? node[i] / m : 0.0;
       if (nreal == 8) {
