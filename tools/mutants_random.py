@@ -153,8 +153,8 @@ def line_of(text, at):
 
 
 def what_is(name, line, begin, end, new):
-    """the change and the line that it gives"""
-    return "%s: %s" % (name, (line[:begin] + new + line[end:]).strip())
+    """the change and the line that it gives, without a comment"""
+    return "%s: %s" % (name, without_comment(line[:begin] + new + line[end:]).strip())
 
 
 def changes(sources):

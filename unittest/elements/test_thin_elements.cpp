@@ -910,6 +910,10 @@ SERIAL_TEST(ThinElements, BadInput)
               HasSubstr("gas is given twice"));
   EXPECT_THAT(failure(ball.name, thick, "", "fix b all mpm/airbag e pressure 1 pressure 2\n"),
               HasSubstr("pressure is given twice"));
+  EXPECT_THAT(failure(ball.name, thick, "",
+                      "variable in equal -2\nfix b all mpm/airbag e gas 1e5 1.4 temperature 300 "
+                      "287 inflow v_in 250\ntimestep 1e-6\nrun 1\n"),
+              HasSubstr("-2 and 250 at step 1"));
   // no vent lets pass more than the exact nozzle does: taken, but said
   const std::string vented = box(3, -0.6, 0.6, 0.05, "") + "create_points 1 mesh " + ball.name +
       " " + thick +

@@ -81,6 +81,16 @@ TEST(Surface, IsNotOnAFixedFace)
                        "1 7", "0 6"));
     EXPECT_EQ(measured("points", surface_points(run)), c.expected) << c.options << " " << c.gap;
   }
+
+  // nor is anything next to it nearer to the surface, whichever node is the first one
+  for (const char *origin : {"0 0 0", "6 6 -1"}) {
+    Scene run(replaced(replaced(head, "-1 12", "0 12") +
+                           slab(std::string("origin ") + origin,
+                                "displace_atoms all move 6.3 6.3 0 units box\n"
+                                "fix surf slab mpm/surface depth 2"),
+                       "1 7", "0 6"));
+    EXPECT_EQ(surface_points(run), 4 * 24 * 24) << origin;
+  }
 }
 
 // Points that have failed are no longer inside of anything, and their neighbors have a surface.

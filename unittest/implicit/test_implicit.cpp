@@ -443,19 +443,25 @@ SERIAL_TEST(Vibration, HasTheOrderOfTheMethod)
 // the ledger closes in statics with steps of any length
 SERIAL_TEST(Bar, LedgerInLongSteps)
 {
-  for (const char *dt : {"1e-3", "1e6"})
-    for (const char *frame : {"updated", "total"}) {
-      Scene run(plane("si", "f f", "0 1 0 0.4", 1, 0.02) +
-                body("box", "density 7850 linear 200e9 0.3", std::string("0.1 frame ") + frame) +
-                "fix sides all mpm/boundary xlo ylo yhi slip\n"
-                "variable u equal -1e-3*(1+0.001*step)\n"
-                "fix end all mpm/boundary xhi slip displacement v_u 0 0\n"
-                "fix solve all mpm/implicit static\ncompute e all mpm/energy\ntimestep " +
-                dt + "\nrun 3\n");
-      const double *const e = run.compute_vector("e");
-      EXPECT_LT(measured(strprintf("%s, %s", dt, frame), std::fabs(e[10] / e[1])), 1e-10);
-      EXPECT_NEAR(e[6] / (2.0 * e[1]), 1.0, 0.01) << "work of the wall, with the force of the end";
-    }
+  struct {
+    const char *units, *dt, *frame;
+  } const cases[] = {{"si", "1e-3", "updated"},
+                     {"si", "1e-3", "total"},
+                     {"si", "1e6", "updated"},
+                     {"si", "1e6", "total"},
+                     {"metal", "1e-3", "updated"}};    // energies are not masses times squares
+  for (const auto &[units, dt, frame] : cases) {
+    Scene run(plane(units, "f f", "0 1 0 0.4", 1, 0.02) +
+              body("box", "density 7850 linear 200e9 0.3", std::string("0.1 frame ") + frame) +
+              "fix sides all mpm/boundary xlo ylo yhi slip\n"
+              "variable u equal -1e-3*(1+0.001*step)\n"
+              "fix end all mpm/boundary xhi slip displacement v_u 0 0\n"
+              "fix solve all mpm/implicit static\ncompute e all mpm/energy\ntimestep " +
+              dt + "\nrun 3\n");
+    const double *const e = run.compute_vector("e");
+    EXPECT_LT(measured(strprintf("%s, %s, %s", units, dt, frame), std::fabs(e[10] / e[1])), 1e-10);
+    EXPECT_NEAR(e[6] / (2.0 * e[1]), 1.0, 0.01) << "work of the wall, with the force of the end";
+  }
 }
 
 // the ledger closes in dynamics, and knows what backward Euler takes
@@ -472,7 +478,10 @@ SERIAL_TEST(Beam, EnergiesOfDynamics)
     const double *const e = run.compute_vector();
     measured(std::string(implicit) + " residual", e[10] / e[5]);
     EXPECT_LT(std::fabs(e[10]), 1e-10 * e[5]);
-    measured("integration", e[9] / e[5]);
+    // newmark and midpoint keep the energy of a linear law, alpha and hht damp short waves only
+    const double lost = std::fabs(measured("integration", e[9] / e[5]));
+    const bool keeps = implicit == "newmark" || implicit == "midpoint";
+    if (implicit != "euler") EXPECT_LT(lost, keeps ? 1e-7 : 1e-3);
     measured("transfer", e[8] / e[5]);
     measured("steps of the explicit limit", 0.002 / run.stable_dt());
   }
@@ -628,6 +637,19 @@ SERIAL_TEST(Multigrid, FacesBetweenNodes)
                   kind));
     EXPECT_LE(measured(std::string(kind) + ": iterations in 20 steps", solved(run, 5)), 110.0);
   }
+}
+
+// where three faces meet that a body may leave, they hold more nodes together than have a unit
+// vector each: factors know these, too
+SERIAL_TEST(Multigrid, CornerOfThreeFaces)
+{
+  Scene run(space("lj", "f f f", "0 1.5 0 1.5 0 1.5", 1, 0.0375) +
+            body("block 0 0.5 0 0.5 0 0.5", "density 1 neohookean 1000 0.3", "0.125") +
+            "fix w all mpm/boundary xlo ylo zlo separate\nfix g all gravity 2 vector -1 -2 -2\n"
+            "fix solve all mpm/implicit static solver multigrid\ntimestep 1.0\nrun 1\n");
+  EXPECT_LE(linear_in_each(run), 3.0);
+  const double *const f = run.fix_vector("w", 3), exact[3] = {-1.0, -2.0, -2.0};
+  for (int d = 0; d < 3; d++) EXPECT_NEAR(f[d], exact[d] * 2.0 / 3.0 * 0.125, 1e-4);
 }
 
 // of a slender body, iterations do not grow with the number of cells

@@ -95,6 +95,17 @@ SERIAL_TEST(Blocks, ArePressed)
       EXPECT_NEAR(run.fix("floor")->compute_vector(1) / force, 1.0, 1e-7);
       EXPECT_NEAR(run.fix("lid")->compute_vector(1) / -force, 1.0, 1e-6);
     }
+
+  // layers without an end, whichever node is the first one
+  for (const std::string origin : {"0 0", "-0.1 0.3"}) {
+    Scene run(plane("si", "p f", "0 0.8 0 1", 2, 0.02) +
+              two_bodies_in("0 0.8 0 0.5 INF INF", "0 0.8 0.5 1 INF INF", "0.1 origin " + origin) +
+              "fix touch all mpm/contact F1 F2\n"
+              "fix floor all mpm/boundary ylo slip\n"
+              "fix lid all mpm/boundary yhi slip velocity 0 -0.01 0\n"
+              "fix solve all mpm/implicit static\ntimestep 1.0\nrun 1\n");
+    EXPECT_LT(measured("layers, origin " + origin + ": scatter of stress", scatter(run, 1)), 1e-5);
+  }
 }
 
 // a soft block on one that is ten times as stiff: each has its own strain, up to the interface

@@ -142,4 +142,12 @@ SERIAL_TEST(Free, BodiesAreToldAtOnce)
   };
   expect_error(slides("1 -1 0"), "along the force (707.1, 0, 0)");
   Scene pressed(slides("0 -1 0"));
+
+  // components that have different signs do not make the forces small
+  expect_error(
+      space("si", "f f f", "0 1 0 1 0 1") +
+          body("block 0.25 0.75 0.25 0.75 0.25 0.75", "density 1000 neohookean 1e6 0.3", "0.25") +
+          "fix g all gravity 1.0 vector 0 1 -1\nfix solve all mpm/implicit static\n"
+          "timestep 1.0\nrun 1\n",
+      "along the force (0, 88.39, -88.39)");
 }

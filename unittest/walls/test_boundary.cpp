@@ -215,19 +215,24 @@ PARAMETER_TEST(EndOfAFunction, HasNoWeight, EndCase, ValuesIn(end_cases))
   }
 }
 
-// edges and corners: also there both walls have their velocity
+// edges and corners: also there both walls have their velocity, and with friction, which changes
+// what other faces hold, their normal velocity
 TEST(WallCorners, AreHeld)
 {
-  for (const char *shape : {"quadratic", "cubic"}) {
-    Scene run(space("lj", "f f f", "0 6 0 6 0 6") + "fix grid all mpm 1.0 shape " + shape + R"(
+  struct {
+    const char *grid, *wall;
+  } const cases[] = {{"shape quadratic", "stick"},
+                     {"shape cubic", "stick"},
+                     {"shape quadratic origin 0.4 0.36 0.38", "slip friction 0.2"}};
+  for (const auto &c : cases) {
+    Scene run(space("lj", "f f f", "0 6 0 6 0 6") + "fix grid all mpm 1.0 " + c.grid + R"(
 region body block 0 4 0 4 0 4
 create_points 1 region body ppc 2
 displace_atoms all random 0.1 0.1 0.1 872631
 fix m all mpm/material density 1.0 neohookean 10.0 0.3
-fix w all mpm/boundary xlo ylo zlo stick
 timestep 0.01
-run 0
-)");
+fix w all mpm/boundary xlo ylo zlo )" +
+              c.wall + "\nrun 0\n");
     set_field(run, wild);
     auto *atom = run.lmp->atom;
     for (int i = 0; i < atom->nlocal; i++)
@@ -236,11 +241,55 @@ run 0
     auto before = run.gather();
     run.commands("run 1\n");
     auto after = run.gather();
+    const bool stick = strstr(c.wall, "stick");
     double worst = 0.0;
+    for (std::size_t k = 0; k < after.size(); k++) {
+      const double *const x = before[k].x;
+      const bool held = x[0] == 0.0 || x[1] == 0.0 || x[2] == 0.0;
+      for (int d = 0; d < 3; d++)
+        if (stick ? held : x[d] == 0.0) grow(worst, after[k].v[d]);
+    }
+    EXPECT_LT(measured(c.grid, worst), 1.0e-14);
+  }
+}
+
+// a hole in a region: next to its corners, where lines of nodes through both faces share one node
+// or more, points on the faces have the velocity of the wall
+TEST(RegionCorners, AreHeld)
+{
+  struct {
+    const char *hole;
+    double places[2][2];
+  } const cases[] = {{"2.7 9.3 2.6 9.4", {{2.7, 4.1}, {4.1, 2.6}}},
+                     {"2.3 9.7 2.4 9.6", {{9.7, 7.9}, {7.9, 9.6}}}};
+  for (const auto &c : cases) {
+    Scene run(plane("lj", "f f", "0 12 0 12") +
+              strprintf("fix grid all mpm 1.0 transfer apic\nregion body block %s INF INF\n"
+                        "region wall block %s INF INF side out\n"
+                        "create_points 1 region body ppc 2\n"
+                        "fix m all mpm/material density 1.0 neohookean 10.0 0.3\n"
+                        "fix w all mpm/boundary region wall stick\ntimestep 0.01\nrun 0\n",
+                        c.hole, c.hole));
+    set_field(run, wild);
+    for (int i = 0; i < run.n(); i++) {
+      run.v()[i][2] = 0.0;
+      for (const double *place : c.places)
+        if (hypot(run.x()[i][0] - place[0], run.x()[i][1] - place[1]) < 0.55)
+          std::copy_n(place, 2, run.x()[i]);
+    }
+    const auto before = run.gather();
+    run.commands("run 1\n");
+    const auto after = run.gather();
+    double worst = 0.0;
+    int found = 0;
     for (std::size_t k = 0; k < after.size(); k++)
-      if (before[k].x[0] == 0.0 || before[k].x[1] == 0.0 || before[k].x[2] == 0.0)
-        for (int d = 0; d < 3; d++) grow(worst, after[k].v[d]);
-    EXPECT_LT(measured(shape, worst), 1.0e-14);
+      for (const double *place : c.places) {
+        if (!std::equal(place, place + 2, before[k].x)) continue;
+        found++;
+        for (int d = 0; d < 2; d++) grow(worst, after[k].v[d]);
+      }
+    EXPECT_GE(found, 2);
+    EXPECT_LT(measured(c.hole, worst), 1.0e-13);
   }
 }
 
