@@ -335,6 +335,34 @@ TEST(Normals, LogisticRegressionIsTheSameOnAnyNumberOfRanks)
 // The impulse at a node is along the sums over the points of both bodies of volume or mass times
 // the gradient of its function, or along the difference of their directions. Gradients are those of
 // splines or, with affine matrices, of moving least squares
+// where one body reaches nodes inside of the other one, whose gradient is round-off there: the same
+// for a lattice that is moved by round-off
+SERIAL_TEST(Normals, RoundOffIsNoDirection)
+{
+  const auto run = [](double origin) {
+    const auto lattice = strprintf("mpm 1 shape cpdi2 origin %g %g\n", origin, origin);
+    Scene run(plane("lj", "f f", "0 14 0 12", 2) + R"(
+region left block 1 5 2 6 INF INF
+region right block 5 9 3 6 INF INF
+create_points 1 region left spacing 0.5
+create_points 2 region right spacing 0.5
+group left type 1
+group right type 2
+velocity left set 0.09 0.03 0
+velocity right set -0.09 0.03 0
+)" + "fix F1 left " +
+              lattice + "fix F2 right " + lattice + R"(
+fix m1 left mpm/material density 2 linear 4.5 0.25
+fix m2 right mpm/material density 1 linear 4.5 0.3
+fix touch all mpm/contact F1 F2 law coulomb 0.3
+timestep 0.1
+run 30
+)");
+    return run.gather();
+  };
+  EXPECT_LT(measured("difference", difference(run(0.0), run(3e-15))), 3e-10);
+}
+
 SERIAL_TEST(Normals, AreThoseOfVolumesOrMassesOrColinear)
 {
   const std::vector<std::string> kinds = {"colinear", "volume", "mass"};

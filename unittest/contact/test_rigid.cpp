@@ -481,6 +481,8 @@ TEST(RigidBody, RefusesMistakes)
        {fix + "slip velocity 0 0 -100", "the body crosses 2 cells of fix mpm grid in step 1"},
        {fix + "slip omega 0 0 100", "the body crosses 1.73 cells of fix mpm grid in step 1"},
        {fix + "slip\nfix t2 all mpm/rigid shape density 1.0 slip", "have the same region shape"},
+       {"unfix grid\nfix grid all mpm 1e-4\n" + fix + "slip",
+        "of area 6, goes through 6.0e+08 cells of the node spacing 0.0001"},
        {"unfix grid\nfix grid all mpm 0.5 frame total\n" + fix + "slip", "use frame updated"},
        {"unfix grid\nfix grid all mpm 0.5 scheme usf\n" + fix + "slip", "use usl or musl"}},
       "run 1\n");

@@ -200,6 +200,35 @@ SERIAL_TEST(Blocks, ComeTogether)
   }
 }
 
+// sides along a line of nodes through the interface, whose slope is round-off, are not part of it:
+// the same for a lattice that is moved by round-off
+SERIAL_TEST(Block, RoundOffOfASideIsNoSlope)
+{
+  const auto run = [](double origin) {
+    const auto lattice = strprintf("mpm 1 shape cubic origin %g %g\n", origin, origin);
+    Scene run(plane("lj", "f f", "0 14 0 12", 2) + R"(
+region left block 1 5 2 6 INF INF
+region right block 5 9 3 6 INF INF
+create_points 1 region left spacing 0.5
+create_points 2 region right spacing 0.5
+group left type 1
+group right type 2
+velocity left set 0.3 0.1 0
+)" + "fix F1 left " +
+              lattice + "fix F2 right " + lattice + R"(
+fix m1 left mpm/material density 2 linear 4.5 0.25
+fix m2 right mpm/material density 1 linear 4.5 0.3
+fix touch all mpm/contact F1 F2
+fix solve all mpm/implicit euler tolerance 1e-11
+timestep 0.1
+run 1
+)");
+    return run.gather();
+  };
+  for (const double origin : {3e-15, -3e-15})
+    EXPECT_LT(measured("difference", difference(run(0.0), run(origin))), 1e-12);
+}
+
 // a block of rubber on another one sticks on a slope below the coefficient of friction
 SERIAL_TEST(Block, SticksOnAnotherOne)
 {

@@ -320,6 +320,9 @@ void FixMPMRigid::check_motion(double dt) const
                  remedy_of_step(lmp));
 }
 
+// cells that a surface may go through; each has some points, of some hundred bytes
+static constexpr double MOST_CELLS = 1.0e7;
+
 /** Points of the surface at which it can meet others, as near to each other as nodes. */
 void FixMPMRigid::find_points()
 {
@@ -329,6 +332,20 @@ void FixMPMRigid::find_points()
       for (int d = 0; d < 3; d++) corner[d] -= first[d];
   double h = contact.farthest;
   for (const auto *field : MPMField::all(lmp)) h = std::min(h, field->lattice.h);
+  double area = 0.0;
+  for (const auto &[a, b, c] : soup) {
+    double ab[3], ac[3], twice[3];
+    MathExtra::sub3(b.data(), a.data(), ab);
+    MathExtra::sub3(c.data(), a.data(), ac);
+    MathExtra::cross3(ab, ac, twice);
+    area += 0.5 * MathExtra::len3(twice);
+  }
+  if (!(area < MOST_CELLS * h * h))
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/rigid {}: the surface of the body, of area {:.3g}, goes through {:.1e} "
+               "cells of the node spacing {:.3g}: use a larger one, or check the scale of the "
+               "surface",
+               id, area, area / (h * h), h);
   contact.points = std::make_unique<SurfacePoints>(soup, h);
 }
 

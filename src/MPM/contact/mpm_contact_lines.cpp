@@ -42,7 +42,8 @@ static constexpr double DIAGONAL = 0.25;    // weight of a line diagonally next 
 // wider body, from which on lines follow others
 static constexpr double CROSSING = 0.15, SIDE = 0.1;
 static constexpr double COVERED = 1.0e-3;    // least fraction of the cross-section of a line
-static constexpr double SAME = 1.0e-6;       // relative difference of fractions that count as equal
+static constexpr double ALONG = 1.0e-8;    // component of the normal of a side that is along a line
+static constexpr double SAME = 1.0e-6;     // relative difference of fractions that count as equal
 
 void MPMContactLines::find(MPMContacts &of)
 {
@@ -147,8 +148,8 @@ MPMContactLines::Coverage MPMContactLines::coverage(const MPMContactBody &body, 
     const double circle = body.field->frame->node_circle(slot, n);
     double g[3];
     bodies.gradient_with_mirrors(body, slot, n, g);
-    // skip the other surface of a thin body
-    if (!(circle > 0.0 && sign * g[line.axis] > 0.0)) continue;
+    // skip the other surface of a thin body, and sides along the line
+    if (!(circle > 0.0 && sign * g[line.axis] > ALONG * MathExtra::len3(g))) continue;
     for (int d = 0; d < lattice.dim; d++) {
       covered.g[d] += g[d] / (cross * circle);
       covered.alone[d] += body.gradient[3 * node + d] / (cross * circle);

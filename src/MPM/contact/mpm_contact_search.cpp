@@ -46,6 +46,11 @@ using namespace MPM_NS;
 
 static constexpr double ROUNDING = 1.0e-8, BOX_ROUNDING = 1.0e-3;
 
+// a gradient below this share of that of the other body counts in proportion to its length: at nodes
+// inside of a body it is round-off, and has no direction
+
+static constexpr double FLAT = 1.0e-3;
+
 // with pore water, each node between bodies has a part of its force. Bodies then touch at sums of
 // fractions down to this far below one; from NEARLY on, a warning counts the force at nodes where
 // they do not touch
@@ -127,8 +132,9 @@ bool MPMContactSearch::find_normal(const MPMSharedBlock &block, int n, MPMNodeCo
   bodies.gradient_with_mirrors(bodies[pair.b], b, n, gb);
   const double la = MathExtra::len3(ga), lb = MathExtra::len3(gb);
   if (la == 0.0 && lb == 0.0) return false;
-  const double wa = colinear ? (la > 0.0 ? 1.0 / la : 0.0) : 1.0;
-  const double wb = colinear ? (lb > 0.0 ? 1.0 / lb : 0.0) : 1.0;
+  const double least = FLAT * std::max(la, lb);
+  const double wa = colinear ? 1.0 / std::max(la, least) : 1.0;
+  const double wb = colinear ? 1.0 / std::max(lb, least) : 1.0;
   for (int d = 0; d < 3; d++) pair.n[d] = d < bodies.dim() ? wa * ga[d] - wb * gb[d] : 0.0;
   const double length = MathExtra::len3(pair.n);
   if (!(length > 1.0e-10 * (wa * la + wb * lb))) return false;
