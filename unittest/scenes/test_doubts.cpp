@@ -301,6 +301,23 @@ SERIAL_TEST(Doubts, LawsOfFluid)
   EXPECT_EQ(told(fluid + law("all"), words), 1);
 }
 
+// loads act on points of fix mpm, which may be next to a flow
+SERIAL_TEST(Doubts, LoadsOnAFlow)
+{
+  const auto scene = replaced(START, "atom_style mpm", "atom_style hybrid sphere mpm") +
+      "create_points 1 region b spacing 0.025\n" +
+      "region c block 0.4 0.6 0.6 0.8 INF INF\ncreate_points 2 region c spacing 0.025\n"
+      "group fluid type 1\ngroup block type 2\nfix grid block mpm 0.05\n"
+      "fix m block mpm/material density 1000 neohookean 1e5 0.3\n"
+      "fix w fluid mpm/incompressible 0.05 1000\nfix g all gravity 9.81 vector 0 -1 0\n" +
+      replaced(STEP, "0.5", "0.5 max 0.001");
+  const std::string words = "points of its group are in the flow";
+  for (const std::string group : {"fluid", "block", "all"})
+    for (const std::string load : {" mpm/traction free pressure 100", " mpm/surface"})
+      EXPECT_EQ(told(scene + "fix load " + group + load + "\n", words), group == "fluid")
+          << group << load;
+}
+
 // grains in the group of a flow are moved by their fix only, which LAMMPS does not know
 SERIAL_TEST(Doubts, GroupsOfIntegrators)
 {

@@ -8,6 +8,7 @@
 
 #include "flow/mpm_flow_checks.h"
 
+#include "base/mpm_find_fixes.h"
 #include "base/mpm_gravity.h"
 #include "field/mpm_setup_checks.h"
 
@@ -60,6 +61,7 @@ void MPMFlowChecks::check_points()
          all[3];    // points, those of another density, and those larger than a cell
   if (parts.solids) check_solids();
   check_laws();
+  check_loads();
   for (int i = 0; i < atom->nlocal; i++) {
     if (!parts.cells.is_point(i)) continue;
     const double mass = density(i) * atom->vfrac[i];
@@ -145,6 +147,24 @@ void MPMFlowChecks::check_laws()
                      "have the density and viscosity of fix {}: give it a group without them, or "
                      "name their group with keyword solid if they are elastic",
                      who, law->id, all, STYLE);
+  }
+}
+
+/** Warns of loads and surfaces that have points of the flow alone, on which they do not act. */
+void MPMFlowChecks::check_loads()
+{
+  for (const auto *load : find_fixes(lmp, {"^mpm/traction$", "^mpm/surface$"})) {
+    bigint mine[2] = {0, 0}, all[2];    // points of the flow, and others
+    for (int i = 0; i < atom->nlocal; i++)
+      if (atom->mask[i] & load->groupbit) mine[!parts.cells.is_point(i)]++;
+    MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (!all[0] || all[1] || warned_of_loads) continue;
+    warned_of_loads = true;
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "{}: fix {} {} acts on points of fix mpm, and does nothing here, as all {} "
+                     "points of its group are in the flow: remove it, or give it another group",
+                     who, load->style, load->id, all[0]);
   }
 }
 

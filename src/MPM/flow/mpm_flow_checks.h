@@ -57,12 +57,14 @@ class MPMFlowChecks : protected Pointers {
   const std::string id, who;
   MPMDoubts doubts;
   bool warned_of_size = false, warned_of_liquids = false, warned_of_regions = false,
-       warned_of_interfaces = false, warned_of_laws = false, has_gravity = false;
+       warned_of_interfaces = false, warned_of_laws = false, warned_of_loads = false,
+       has_gravity = false;
 
   double density(int i) const;
   void check_liquids();
   void check_solids();
   void check_laws();
+  void check_loads();
 };
 
 }    // namespace LAMMPS_NS
