@@ -106,7 +106,9 @@ void MPMContactLines::find_lines()
     all[{pair.a, pair.b, 2 * axis + (sign > 0.0), index[0], index[1], index[2]}].emplace_back(
         at, (int) p);
   }
-  for (auto &[key, places] : all) {
+  for (auto &entry : all) {    // no structured binding: C++17 has none in lambdas
+    const Key &key = entry.first;
+    auto &places = entry.second;
     const int axis = key[2] / 2;
     std::sort(places.begin(), places.end());
     const std::size_t n = places.size();

@@ -89,7 +89,7 @@ static double integral(Shape shape, double t)
 void MPMVolumeDrift::init()
 {
   corrects = field.options.drift > 0.0 && !field.options.averages_strain() &&
-      std::any_of(field.materials.begin(), field.materials.end(), [this](const auto *material) {
+      std::any_of(field.materials.begin(), field.materials.end(), [](const auto *material) {
                return material->volume_rate != nullptr;
              });
   warned = cleared = false;
