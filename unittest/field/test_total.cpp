@@ -383,10 +383,9 @@ TEST(TotalInput, IsRefused)
 // points where functions end or gradients jump: round-off decides about nodes and strain
 TEST(TotalInput, RoundOffThatDecidesHasAWarning)
 {
-  const auto scene = [](const std::string &options, const char *ppc, const char *x = "5 11 5 11",
-                        const char *faces = "p p") {
-    return plane("lj", faces, "0 16 0 16", 1, 0.5) +
-        body(strprintf("block %s INF INF", x), "density 1.0 neohookean 10.0 0.3",
+  const auto scene = [](const std::string &options, const char *ppc) {
+    return plane("lj", "p p", "0 16 0 16", 1, 0.5) +
+        body("block 5 11 5 11 INF INF", "density 1.0 neohookean 10.0 0.3",
              "1.0 frame total " + options, ppc) +
         "velocity all ramp vx -0.3 0.3 y 5 11\nvelocity all ramp vy 0.2 -0.2 y 5 11 sum yes\n"
         "timestep 0.05\n";
@@ -399,15 +398,8 @@ TEST(TotalInput, RoundOffThatDecidesHasAWarning)
     return run.lmp->error->get_numwarn() > before;
   };
   if (nranks() == 1) {
-    EXPECT_TRUE(warns(scene(flip, "1")));
-    EXPECT_TRUE(warns(scene("transfer pic", "1", "INF INF 5 11")));
-    EXPECT_FALSE(warns(scene(flip, "1", "INF INF INF INF")));
-    EXPECT_TRUE(warns(scene(flip, "1", "INF INF INF INF", "f p")));
-    EXPECT_FALSE(warns(scene(flip, "2")));
-    EXPECT_FALSE(warns(scene(flip, "3")));
-    EXPECT_FALSE(warns(scene(flip + " scheme musl", "1")));
+    for (const char *ppc : {"1", "2", "3"}) EXPECT_FALSE(warns(scene(flip, ppc))) << ppc;
     EXPECT_FALSE(warns(scene(flip + " shape cubic", "1")));
-    EXPECT_FALSE(warns(scene("transfer apic", "1")));
     for (const char *shape : {"linear", "bernstein"}) {
       const std::string musl = strprintf("shape %s transfer flip 1.0 scheme musl", shape);
       EXPECT_FALSE(warns(scene(musl, "1"))) << shape;
@@ -425,10 +417,10 @@ TEST(TotalInput, RoundOffThatDecidesHasAWarning)
       for (int d = 0; d < 2; d++) most = std::max(most, std::abs(a[k].v[d] - b[k].v[d]));
     return measured("change of velocities", most);
   };
-  EXPECT_GT(change(scene(flip, "1")), 1e-4);
   EXPECT_GT(change(scene("shape linear transfer flip 1.0 scheme musl", "1") +
                    "displace_atoms all move 0.5 0.5 0\n"),
             1e-4);
-  EXPECT_LT(change(scene(flip, "2")), 1e-11);
+  // functions that end in a plane of nodes, which may have a mass by round-off
+  EXPECT_LT(change(scene(flip, "1")), 1e-11);
   EXPECT_LT(change(scene(flip + " scheme musl", "1")), 1e-11);
 }

@@ -180,7 +180,7 @@ struct Points {
   };
   Corners corners(int p) const
   {
-    Corners c;
+    Corners c = {};
     const double *r = &domain[row * p];
     std::fill(c.w, c.w + 8, 1.0 / N);
     if (row == dim * dim)

@@ -184,56 +184,37 @@ void MPMSetupChecks::liquid_on_bodies()
 }
 
 /** In the total frame points stay at their positions in their cells, even where round-off decides
- *  about strain and stress. Linear and Bernstein functions have gradients that jump at faces of
- *  cells. Those of quadratic functions do not, but near the end of one (grad N)^2/N does not
- *  vanish. Forces have one factor grad N, and the strain from new velocities has another one: a
- *  node that only this point reaches, with the mass m_p N, changes its strain by an amount that
- *  does not depend on N, unless N is zero. Only the outermost points have such nodes. */
+ *  about strain and stress: linear and Bernstein functions have gradients that jump at faces of
+ *  cells. */
 void MPMSetupChecks::places()
 {
   constexpr double NEAR = 1.0e-9;    // in node spacings
   const auto &options = field.options;
   const auto &lattice = field.lattice;
   const auto &shape = shape_constants[options.shape];
-  const bool quadratic = options.shape == QUADRATIC;
-  if (!options.total || options.shape == CUBIC) return;
-  if (quadratic && (options.scheme != MPMFieldOptions::USL || is_affine(options.transfer))) return;
+  if (!options.total || options.shape == QUADRATIC || options.shape == CUBIC) return;
 
   const auto is_end = [&](double t) {
     const double cells = (t - shape.shift) / shape.cell;
     return fabs(cells - std::round(cells)) < NEAR;
   };
-  // along each axis: largest position, largest with the opposite sign, and whether any is at an end
-  double mine[9], all[9];
-  std::fill_n(mine, 6, -std::numeric_limits<double>::max());
-  std::fill_n(mine + 6, 3, 0.0);
+  int mine[3] = {0, 0, 0}, all[3];    // is any at an end, along each axis?
   for (int i = 0; i < atom->nlocal; i++) {
     if (!field.is_point(i) || field.is_element_node(i)) continue;
     for (int d = 0; d < lattice.dim; d++) {
       const double t = (field.frame->places()[i][d] - lattice.origin[d]) / lattice.h;
-      mine[d] = std::max(mine[d], t);
-      mine[3 + d] = std::max(mine[3 + d], -t);
-      if (is_end(t)) mine[6 + d] = 1.0;
+      if (is_end(t)) mine[d] = 1;
     }
   }
-  MPI_Allreduce(mine, all, 9, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(mine, all, 3, MPI_INT, MPI_MAX, world);
 
   for (int d = 0; d < lattice.dim; d++) {
-    const double high = all[d], low = -all[3 + d];
-    bool bad = all[6 + d] > 0.0;
-    if (quadratic) bad = bad && (is_end(high) || is_end(low));
-    // across a periodic face, the outermost points are next to each other
-    if (quadratic && lattice.periodic[d] && low + lattice.ncell[d] - high < 3.0 - NEAR) bad = false;
-    if (!bad) continue;
+    if (!all[d]) continue;
     if (comm->me == 0)
       error->warning(FLERR,
-                     quadratic ? "Fix mpm {}: round-off decides whether the outermost points along "
-                                 "{} reach the next node, and in frame total with scheme usl and "
-                                 "this transfer about their stress, as they are in the middle of "
-                                 "cells: use other ones (ppc 2), transfer apic, or scheme musl"
-                               : "Fix mpm {}: round-off decides in which cell points along {} are, "
-                                 "and in frame total about their stress, as they are on faces of "
-                                 "cells: use other ones (ppc), or another origin",
+                     "Fix mpm {}: round-off decides in which cell points along {} are, and in "
+                     "frame total about their stress, as they are on faces of cells: use other "
+                     "ones (ppc), or another origin",
                      field.id(), (char) ('x' + d));
     return;
   }
