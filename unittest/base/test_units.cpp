@@ -58,7 +58,7 @@ static Result simulate(const std::string &units, const std::string &scene)
   r.inconsistency = std::abs(force->mvv2e * force->ftm2v - 1.0);
   EXPECT_LT(std::abs(energy->vector[10]), 1.0e-10 * total) << units;
   if (run.lmp->modify->get_fix_by_style("^mpm/elements$").empty()) {
-    EXPECT_NEAR(run.compute_scalar("sum"), energy->vector[1], 1.0e-10 * total) << units;
+    EXPECT_NEAR(run.compute_scalar("sum"), energy->vector[1], 1.0e-12 * total) << units;
   }
   for (auto &s : r.states)
     for (double &stress : s.stress) stress /= force->mvv2e * force->nktv2p;

@@ -412,7 +412,7 @@ TEST(Surface, VolumeOfABallIsOfSecondOrder)
         1.0;
     EXPECT_NEAR(errors[R == 12] * R * R, -3.0 * (0.49 + 1.0 / 12.0 + 1.0 / 6.0), 0.15);
   }
-  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2.0, 0.2);
+  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2.0, 0.02);
 }
 
 // slivers go to neighbors: no volume is lost, no point is small, at any distance of points
@@ -431,8 +431,8 @@ TEST(Surface, NothingIsLost)
       EXPECT_LE(p.vol, 1.4 * site);
     }
   }
-  EXPECT_NEAR(volume[0] / volume[3], 1.0, 3e-4);
-  EXPECT_NEAR(volume[1] / volume[3], 1.0, 1e-4);
+  EXPECT_NEAR(volume[0] / volume[3], 1.0, 1e-5);
+  EXPECT_NEAR(volume[1] / volume[3], 1.0, 1e-5);
 }
 
 // a plane at 1/3 of a pixel, by the brightness of what it cuts; and what is dark
@@ -444,8 +444,8 @@ TEST(Surface, PlaneAndItsComplement)
   const std::string options = "pixel 0.1 0.25 sites pixels smooth 0 threshold 120";
   const double a = total(points_of(file, options)),
                b = total(points_of(file, options + " invert yes"));
-  EXPECT_NEAR(a + b, 1.0, 1e-6);
-  EXPECT_NEAR(a, 0.475, 1e-6);    // 160 to 0 is linear: 120 is at a quarter of a pixel
+  EXPECT_NEAR(a + b, 1.0, 1e-12);
+  EXPECT_NEAR(a, 0.475, 1e-12);    // 160 to 0 is linear: 120 is at a quarter of a pixel
 }
 
 // a cell that is repeated: its surface goes on across the faces
@@ -470,7 +470,7 @@ TEST(Surface, GoesOnAcrossPeriodicFaces)
                             n, 1.0 / n),
                   plane("si", "p p", "0 1 0 1")));
   }
-  EXPECT_NEAR(volume[0], volume[1], 1e-7);
+  EXPECT_NEAR(volume[0], volume[1], 1e-12);
 }
 
 // gray values as the temperature at the start, and as the factor of a yield stress

@@ -55,8 +55,8 @@ SERIAL_TEST(Relax, VolumesOfADiskAreEqual)
     Scene run(box_of_2d + "region body sphere 0.037 0.02 0 1\n" + relaxed(0.1, times));
     const Sum sum(run);
     EXPECT_NEAR(sum.volume, PI, 1.0e-3 * PI);
-    EXPECT_NEAR(sum.center[0], 0.037, 1.0e-3);
-    EXPECT_NEAR(sum.center[1], 0.02, 1.0e-3);
+    EXPECT_NEAR(sum.center[0], 0.037, 4.0e-4);
+    EXPECT_NEAR(sum.center[1], 0.02, 4.0e-4);
     // about the axis, with that of the squares
     EXPECT_NEAR(sum.second[0][0] + sum.second[1][1] + PI * 0.01 / 6.0, PI / 2, 1.0e-3 * PI / 2);
     const auto [least, most] = extremes(run.gather());
@@ -169,7 +169,7 @@ TEST(Relax, OutsideIgnored)
 {
   Scene run(plane("lj", "f f", "-1.03 3 0.013 3") + "region body sphere 0 0 0 1\n" +
             relaxed(0.1, 10, "outside ignore"));
-  EXPECT_NEAR(Sum(run).volume, 0.5 * PI - 2.0 * 0.013, 0.02);
+  EXPECT_NEAR(Sum(run).volume, 0.5 * PI - 2.0 * 0.013, 0.001);
   for (const auto &p : run.gather()) EXPECT_GT(p.x[1], 0.013);
 }
 

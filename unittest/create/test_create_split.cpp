@@ -128,8 +128,8 @@ SERIAL_TEST(Split, WavesPass)
   const double two = measured("2 points per axis", error_after_period("2"));
   const double four = measured("4 points per axis", error_after_period("4"));
   const double graded = measured("2 to 4", error_after_period("2+2*(v_px>0.5)"));
-  EXPECT_LT(two, 0.02);
-  EXPECT_LT(four, 0.02);
+  EXPECT_LT(two, 0.001);
+  EXPECT_LT(four, 0.002);
   EXPECT_LT(graded, 1.5 * std::max(two, four));
 }
 

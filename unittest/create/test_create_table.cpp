@@ -103,7 +103,7 @@ TEST(Dump, SinglePrecision)
 {
   const double d = difference_after_dump("flip 1.0", 2, "sort id precision single");
   EXPECT_GT(d, 1e-9);
-  EXPECT_LT(d, 1e-3);
+  EXPECT_LT(d, 1e-5);
 }
 
 TEST(Dump, OtherPropertiesAndTypes)

@@ -112,7 +112,7 @@ TEST(Crystal, KeepsMomentumAndEnergyWithAPlate)
     run.commands(strprintf("timestep %g\nrun 400\n", dt));
     const double energy = run.evaluate("f_mean");
     run.commands(strprintf("run %d\n", steps - 400));
-    EXPECT_NEAR(measured("momentum/start", run.evaluate("v_p") / p), 1.0, 1.0e-10);
+    EXPECT_NEAR(measured("momentum/start", run.evaluate("v_p") / p), 1.0, 1.0e-12);
     EXPECT_LT(std::abs(measured("energy gained/all", (run.evaluate("f_mean") - energy) / energy)),
               1.0e-4);
     EXPECT_LT(run.evaluate("c_e[1]"), 0.8 * impact);    // it has hit

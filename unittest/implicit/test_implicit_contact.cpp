@@ -68,8 +68,8 @@ SERIAL_TEST(Block, IsPushed)
     EXPECT_NEAR(measured("weight", weight) / 5000.0, 1.0, 1e-6) << c.options;
     EXPECT_NEAR(measured(std::string(c.floor) + " " + c.options + ": friction over normal force",
                          run.fix("floor")->compute_vector(0) / weight),
-                0.3, 0.3 * 1e-3);
-    EXPECT_NEAR(run.fix("push")->compute_vector(0), -run.fix("floor")->compute_vector(0), 0.1);
+                0.3, 0.3 * 1e-4);
+    EXPECT_NEAR(run.fix("push")->compute_vector(0), -run.fix("floor")->compute_vector(0), 1e-3);
   }
 }
 
@@ -84,7 +84,7 @@ SERIAL_TEST(Block, SticksOnASlope)
   run.set_reference();
   run.commands("run 1\n");
   const double g = 10.0 / std::sqrt(1.0 + 0.29 * 0.29);
-  EXPECT_NEAR(run.fix("floor")->compute_vector(0) / (500.0 * g * 0.29), 1.0, 1e-5);
+  EXPECT_NEAR(run.fix("floor")->compute_vector(0) / (500.0 * g * 0.29), 1.0, 2e-6);
   double creep = 0.0;
   for (int i = 0; i < run.n(); i++)
     creep = std::max(creep, std::fabs(run.x()[i][0] - run.reference(i)[0]));
@@ -109,7 +109,7 @@ SERIAL_TEST(Block, SlidesDown)
     return measured("friction over normal force",
                     run.fix("floor")->compute_vector(0) / -run.fix("floor")->compute_vector(1));
   };
-  EXPECT_NEAR(ratio(), 0.3, 0.3 * 1e-3);
+  EXPECT_NEAR(ratio(), 0.3, 0.3 * 1e-5);
   // the first step begins without stress, and the block settles
   const double settled = speed();
   run.commands("run 20\n");
@@ -129,7 +129,7 @@ SERIAL_TEST(Lid, LetsGo)
               "variable v equal 0.01-0.03*(step<2)\n"
               "fix lid all mpm/boundary yhi stick velocity 0 v_v 0\n"
               "fix solve all mpm/implicit static\ntimestep 1.0\nrun 1\n");
-    EXPECT_NEAR(run.fix("floor")->compute_vector(1) / (1e6 * std::log(0.98) / 0.98), 1.0, 1e-3)
+    EXPECT_NEAR(run.fix("floor")->compute_vector(1) / (1e6 * std::log(0.98) / 0.98), 1.0, 1e-4)
         << floor;
     run.commands("run 1\n");
     EXPECT_NEAR(run.fix("floor")->compute_vector(1) / (1e6 * std::log(0.99) / 0.99), 1.0, 2e-2)
@@ -173,8 +173,8 @@ SERIAL_TEST(Block, ComesFromAfar)
         if (!many) measured("iterations", run.fix("solve")->compute_vector(0));
       }
       const std::string name = strprintf("%s %s from %g: ", c.floor, c.options, gap);
-      EXPECT_NEAR(measured(name + "force over load", force[0] / 5e4), 1.0, 1e-4);
-      EXPECT_NEAR(measured(name + "the same, many steps", force[1] / 5e4), 1.0, 1e-3);
+      EXPECT_NEAR(measured(name + "force over load", force[0] / 5e4), 1.0, 5e-5);
+      EXPECT_NEAR(measured(name + "the same, many steps", force[1] / 5e4), 1.0, 1e-5);
       if (rubs) continue;
       // of small steps, the last ones come to rest within NEXT_TO of the floor
       EXPECT_NEAR(measured(name + "mean height, in spacings", (mean[0] - mean[1]) / 0.0625), 0.0,
@@ -416,8 +416,8 @@ SERIAL_TEST(Block, Falls)
       mean[many] = mean_height(run);
     }
     const std::string name = strprintf("from %g: ", gap);
-    EXPECT_NEAR(measured(name + "force over weight", force[0] / 2500.0), 1.0, 1e-2);
-    EXPECT_NEAR(measured(name + "force over weight, small steps", force[1] / 2500.0), 1.0, 1e-2);
+    EXPECT_NEAR(measured(name + "force over weight", force[0] / 2500.0), 1.0, 1e-5);
+    EXPECT_NEAR(measured(name + "force over weight, small steps", force[1] / 2500.0), 1.0, 1e-5);
     // of small steps, the last ones come to rest within NEXT_TO of the floor
     EXPECT_NEAR(measured(name + "mean height, in spacings", (mean[0] - mean[1]) / 0.0625), 0.0,
                 0.06);

@@ -147,7 +147,7 @@ TEST(KineticDamping, FastModeAlone)
   }
   EXPECT_GT(most, 2.0);
   EXPECT_EQ(damping.grows, 1.0);
-  EXPECT_LT(std::fabs(x), 1.0e-9);
+  EXPECT_LT(std::fabs(x), 1.0e-12);
 }
 
 TEST(MeanDeformation, FollowsStrains)

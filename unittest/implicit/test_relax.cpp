@@ -200,7 +200,7 @@ SERIAL_TEST(Beam, StressByDefaultIsThatOfGradients)
       other(go_on(at_rest.name, "stress gradient", ""));
   EXPECT_EQ(low(explicit_run), low(same));
   EXPECT_NE(low(explicit_run), low(other));
-  EXPECT_NEAR(low(explicit_run), low(after), 1e-9);
+  EXPECT_NEAR(low(explicit_run), low(after), 1e-12);
   Scene refused;
   expect_error(refused, go_on(later.name, "stress gradient", ""), "stress mls (now gradient)");
 }
@@ -258,9 +258,9 @@ SERIAL_TEST(Forces, HaveUnits)
         "fix g all gravity 0.25 vector 0 -1 0\nfix rest all mpm/relax 1e-3 every 1\n"
         "timestep 1e-6\nrun 1\n");
     auto *const fix = run.fix("rest");
-    EXPECT_NEAR(fix->compute_vector(0) / (64.0 * 2.0 * 0.25), 1.0, 1e-9) << units;
+    EXPECT_NEAR(fix->compute_vector(0) / (64.0 * 2.0 * 0.25), 1.0, 1e-12) << units;
     EXPECT_NEAR(fix->compute_vector(1) * run.lmp->force->nktv2p / (64.0 * std::sqrt(3.0) * 3.0),
-                1.0, 1e-9)
+                1.0, 1e-12)
         << units;
   }
 }

@@ -139,7 +139,7 @@ TEST_P(Kinds, FunctionsAreLinearlyComplete)
       y[b] -= 2 * step;
       mesh.find(y, place.cell, minus);
       if (plus.cell == place.cell && minus.cell == place.cell)
-        EXPECT_NEAR((plus.N[0] - minus.N[0]) / (2 * step), place.g[0][b], 1e-7);
+        EXPECT_NEAR((plus.N[0] - minus.N[0]) / (2 * step), place.g[0][b], 2e-8);
     }
   }
 }

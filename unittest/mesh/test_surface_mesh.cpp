@@ -121,11 +121,11 @@ TEST(SurfaceMesh, ShearedBoxHasExactInertia)
   const double u = a * a / 12.0, v = b * b / 12.0, w = c * c / 12.0;
   const double xx = u + s * s * w, yy = v + 0.25 * s * s * w, xy = 0.5 * s * s * w;
   const double exact[] = {yy + w, xx + w, xx + yy, -xy, -s * w, -0.5 * s * w};
-  EXPECT_NEAR(mesh.volume, mass, 1.0e-8);
-  for (int k = 0; k < 6; k++) EXPECT_NEAR(mesh.inertia[k], mass * exact[k], 1.0e-8) << k;
-  EXPECT_NEAR(mesh.center[0], 4.0 + 0.5 * (a + s * c), 1.0e-8);
-  EXPECT_NEAR(mesh.center[1], 5.0 + 0.5 * (b + 0.5 * s * c), 1.0e-8);
-  EXPECT_NEAR(mesh.center[2], 6.0 + 0.5 * c, 1.0e-8);
+  EXPECT_NEAR(mesh.volume, mass, 1.0e-12);
+  for (int k = 0; k < 6; k++) EXPECT_NEAR(mesh.inertia[k], mass * exact[k], 1.0e-12) << k;
+  EXPECT_NEAR(mesh.center[0], 4.0 + 0.5 * (a + s * c), 1.0e-12);
+  EXPECT_NEAR(mesh.center[1], 5.0 + 0.5 * (b + 0.5 * s * c), 1.0e-12);
+  EXPECT_NEAR(mesh.center[2], 6.0 + 0.5 * c, 1.0e-12);
 }
 
 // a body whose center is not that of its box
@@ -138,11 +138,11 @@ TEST(SurfaceMesh, TetrahedronHasExactInertia)
   const double u = 3.0 / 80.0, w = 1.0 / 80.0;
   const double exact[] = {u * (b * b + c * c), u * (a * a + c * c), u * (a * a + b * b),
                           w * a * b,           w * a * c,           w * b * c};
-  EXPECT_NEAR(mesh.volume, mass, 1.0e-8);
-  for (int k = 0; k < 6; k++) EXPECT_NEAR(mesh.inertia[k], mass * exact[k], 1.0e-8) << k;
-  EXPECT_NEAR(mesh.center[0], 4.0 + 0.25 * a, 1.0e-8);
-  EXPECT_NEAR(mesh.center[1], 5.0 + 0.25 * b, 1.0e-8);
-  EXPECT_NEAR(mesh.center[2], 6.0 + 0.25 * c, 1.0e-8);
+  EXPECT_NEAR(mesh.volume, mass, 1.0e-12);
+  for (int k = 0; k < 6; k++) EXPECT_NEAR(mesh.inertia[k], mass * exact[k], 1.0e-12) << k;
+  EXPECT_NEAR(mesh.center[0], 4.0 + 0.25 * a, 1.0e-12);
+  EXPECT_NEAR(mesh.center[1], 5.0 + 0.25 * b, 1.0e-12);
+  EXPECT_NEAR(mesh.center[2], 6.0 + 0.25 * c, 1.0e-12);
 }
 
 // at sharp edges, beyond which a point is behind one of the two triangles though it is outside
@@ -176,9 +176,9 @@ TEST(SurfaceMesh, TorusConverges)
     if (before > 0.0) EXPECT_NEAR(before / error, 4.0, 0.1);    // second order
     before = error;
     EXPECT_NEAR(mesh.inertia[2] / axial, 1.0, 2.5 * error);
-    EXPECT_NEAR(mesh.center[0], 1.0, 1.0e-5);
-    EXPECT_NEAR(mesh.center[1], -3.0, 1.0e-5);
-    EXPECT_NEAR(mesh.center[2], 5.0, 1.0e-5);
+    EXPECT_NEAR(mesh.center[0], 1.0, 1.0e-11);
+    EXPECT_NEAR(mesh.center[1], -3.0, 1.0e-11);
+    EXPECT_NEAR(mesh.center[2], 5.0, 1.0e-11);
     srand(11);
     const double sag = 2.0 * (R + r) * (1.0 - cos(PI / n)) + 2.0 * r * (1.0 - cos(PI / n));
     for (int k = 0; k < 2000; k++) {
@@ -301,9 +301,9 @@ TEST(RegionMesh, ActsLikeABlock)
                          z + "region body mpm/mesh " + body.name + " 4.0 0 0 -3.0\n" +
                              "region wall mpm/mesh " + wall.name + " 1.0 0 0 0\n" +
                              "region tool mpm/mesh " + tool.name + " 1.0 0 0 0 " + motion + "\n"));
-  EXPECT_LT(difference(block.gather(), mesh.gather()), 1.0e-6);
+  EXPECT_LT(difference(block.gather(), mesh.gather()), 1.0e-10);
   EXPECT_NEAR(mesh.evaluate("f_w1[3]"), block.evaluate("f_w1[3]"),
-              1.0e-5 * fabs(block.evaluate("f_w1[3]")));
+              1.0e-10 * fabs(block.evaluate("f_w1[3]")));
   EXPECT_GT(fabs(block.evaluate("f_w1[3]")), 0.1);
 }
 
@@ -350,7 +350,7 @@ run 1500
     for (int k = 1; k <= 6; k++) {
       const std::string sum = "c_all[" + std::to_string(k) + "]";
       const double expected = block.evaluate(sum);
-      EXPECT_NEAR(mesh.evaluate(sum), expected, 1.0e-9 * expected) << sum;
+      EXPECT_NEAR(mesh.evaluate(sum), expected, 1.0e-12 * expected) << sum;
     }
   }
 }
@@ -376,8 +376,8 @@ SERIAL_TEST(RegionMesh, HasATorque)
   run.commands("run 300\n");
   const auto end = run.sums();
   for (int d = 0; d < 3; d++) {
-    EXPECT_NEAR(start.p[d] - end.p[d], impulse[d], 1.0e-10 * start.mass);
-    EXPECT_NEAR(start.L[d] - end.L[d], impulse[3 + d], 1.0e-9 * start.mass);
+    EXPECT_NEAR(start.p[d] - end.p[d], impulse[d], 1.0e-12 * start.mass);
+    EXPECT_NEAR(start.L[d] - end.L[d], impulse[3 + d], 1.0e-12 * start.mass);
   }
   EXPECT_GT(fabs(impulse[3]), 0.1 * start.mass);
 }
@@ -484,9 +484,9 @@ run 200
   mesh.commands(
       replaced(input, "REGIONS", "region ground " + file + "\nregion air " + file + " side out"));
   EXPECT_GT(plane.gather().size(), 200u);
-  EXPECT_LT(difference(plane.gather(), mesh.gather()), 1.0e-6);
+  EXPECT_LT(difference(plane.gather(), mesh.gather()), 1.0e-10);
   for (const char *force : {"f_w[1]", "f_w[3]"})
-    EXPECT_NEAR(mesh.evaluate(force), plane.evaluate(force), 1.0e-6);
+    EXPECT_NEAR(mesh.evaluate(force), plane.evaluate(force), 1.0e-9);
   EXPECT_LT(plane.evaluate("f_w[3]"), -0.5);
 }
 
@@ -603,12 +603,12 @@ SERIAL_TEST(Leaky, SmallMistakesAreRepaired)
   const SurfaceMesh a = filled(turned);
   EXPECT_EQ(a.holes.edges, 0u);
   EXPECT_EQ(a.holes.turned, (good.size() + 2) / 3);
-  EXPECT_NEAR(a.volume, whole.volume, 1.0e-8);
+  EXPECT_NEAR(a.volume, whole.volume, 1.0e-12);
   EXPECT_EQ(count(a, 0.07), sites);
 
   const SurfaceMesh b = filled(both(good, {good[5], good[77]}));
   EXPECT_EQ(b.holes.repeated, 2u);
-  EXPECT_NEAR(b.volume, whole.volume, 1.0e-8);
+  EXPECT_NEAR(b.volume, whole.volume, 1.0e-12);
   EXPECT_EQ(count(b, 0.07), sites);
 
   Soup missing = good;
@@ -618,10 +618,10 @@ SERIAL_TEST(Leaky, SmallMistakesAreRepaired)
   EXPECT_EQ(c.holes.edges, 6u);
   EXPECT_EQ(c.holes.holes, 2u);
   EXPECT_EQ(c.holes.turned, 0u);
-  EXPECT_NEAR(c.volume, whole.volume, 1.0e-8);    // patches are flat
+  EXPECT_NEAR(c.volume, whole.volume, 1.0e-12);    // patches are flat
   EXPECT_EQ(count(c, 0.07), sites);
 
-  EXPECT_NEAR(filled(inverted(missing)).volume, whole.volume, 1.0e-8);
+  EXPECT_NEAR(filled(inverted(missing)).volume, whole.volume, 1.0e-12);
   EXPECT_THAT(message(text_of(missing)),
               AllOf(HasSubstr("not closed"), HasSubstr("surface leaky")));
 }
@@ -754,10 +754,10 @@ TEST(RegionLeaky, IsTurnedScaledAndMoved)
             "set group all mass 1.0\ncompute c all reduce ave x y z\n"
             "thermo_style custom step c_c[1]\nrun 0\n");
   const double center[3] = {0.71132487, 0.71132487, 1.57735027}, shift[3] = {0.1, 0.2, -0.3};
-  EXPECT_NEAR(run.lmp->atom->natoms * pow(0.04, 3), 0.125 * 6.0, 0.01);
+  EXPECT_NEAR(run.lmp->atom->natoms * pow(0.04, 3), 0.125 * 6.0, 0.004);
   for (int d = 0; d < 3; d++)
     EXPECT_NEAR(run.evaluate("c_c[" + std::to_string(d + 1) + "]"), 0.5 * center[d] + shift[d],
-                0.005);
+                0.0012);
 }
 
 TEST(RegionLeaky, SaysWhatIsWrong)

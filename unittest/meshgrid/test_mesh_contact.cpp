@@ -172,7 +172,7 @@ SERIAL_TEST(MeshContact, BlocksAtRest)
     EXPECT_NEAR(measured("weight of the first", mean->compute_vector(0) / 0.3), 1.0, 0.02);
     EXPECT_NEAR(measured("weight of the second", mean->compute_vector(1) / 0.15), 1.0, 0.02);
     EXPECT_NEAR(measured("forces on the second to the side", mean->compute_vector(2)), 0.0,
-                0.02 * 0.15);
+                1e-4 * 0.15);
   }
 }
 
@@ -210,7 +210,7 @@ SERIAL_TEST(MeshContact, PressedBlock)
       run.commands("fix slow all viscous 0.05\nvariable f equal f_touch[1][2]\n"
                    "fix mean all ave/time 1 400 400 v_f\nrun 2000\n");
       const double mean = run.lmp->modify->get_fix_by_id("mean")->compute_scalar();
-      EXPECT_NEAR(measured(std::string(load) + ": contact over load", mean / 8.0), 1.0, 0.01);
+      EXPECT_NEAR(measured(std::string(load) + ": contact over load", mean / 8.0), 1.0, 1.5e-4);
       // uniaxial strain; points on sides of triangles make bodies softer, without contact, too
       if (kind != QUADS) continue;
       double top = 0.0, n = 0.0;
@@ -300,7 +300,7 @@ SERIAL_TEST(MeshContact, Units)
     EXPECT_GT(measured("part of the momentum", (after[1] - before[1]) / -before[1]), 0.1);
     for (int d = 0; d < 2; d++)
       EXPECT_NEAR(impulse[d], after[d] - before[d], 1e-10 * std::fabs(before[1]));
-    EXPECT_NEAR((after[0] - before[0]) / (after[1] - before[1]), -0.3, 1e-3);
+    EXPECT_NEAR((after[0] - before[0]) / (after[1] - before[1]), -0.3, 4e-6);
   }
 }
 

@@ -216,11 +216,11 @@ TEST(RestartState, WhatWasDeletedIsInTheFile)
   const auto check = [&](Scene &run) {
     const Totals left(run.gather());
     const double *deleted = run.fix_vector("grid", 11) + 6;    // points, mass, momentum
-    EXPECT_NEAR(deleted[0] * 0.25, deleted[1], 1.0e-10 * mass);
+    EXPECT_NEAR(deleted[0] * 0.25, deleted[1], 1.0e-12 * mass);
     EXPECT_NEAR(left.mass + deleted[1], mass, 1.0e-12 * mass);
     for (int d = 0; d < 3; d++) {
-      EXPECT_NEAR(deleted[2 + d], v[d] * deleted[1], 1.0e-9 * mass);
-      EXPECT_NEAR(left.p[d] + deleted[2 + d], v[d] * moving, 1.0e-9 * mass);
+      EXPECT_NEAR(deleted[2 + d], v[d] * deleted[1], 1.0e-12 * mass);
+      EXPECT_NEAR(left.p[d] + deleted[2 + d], v[d] * moving, 1.0e-12 * mass);
     }
     return deleted[1];
   };
@@ -230,7 +230,7 @@ TEST(RestartState, WhatWasDeletedIsInTheFile)
   Scene again("read_restart " + file.name + "\nneighbor 0.3 bin\n" + fixes + "run 0\n");
   EXPECT_EQ(check(again), before);
   again.commands("run 50\n");
-  EXPECT_NEAR(check(again), moving, 1.0e-10 * mass);
+  EXPECT_NEAR(check(again), moving, 1.0e-12 * mass);
 }
 
 // velocities changed between runs change affine matrices, also after a restart file, on any ranks

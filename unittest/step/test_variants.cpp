@@ -170,7 +170,7 @@ TEST_P(CrossingNoise, ForcesOnNodes)
     grow(exact, slopes / sum);
     grow(wave, waves / 0.7 / sum);
   }
-  EXPECT_NEAR(most / P / exact, 1.0, 1.0e-10);
+  EXPECT_NEAR(most / P / exact, 1.0, 1.0e-12);
   EXPECT_NEAR(wave / exact, 1.0,
               order == 1 ? 1.0e-3 : 1.0e-6);    // as far as the waves have been added up
 }

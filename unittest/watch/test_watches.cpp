@@ -151,7 +151,7 @@ TEST(Summary, TellsEnergies)
   ASSERT_EQ(found.size(), 3);
   for (int k = 0; k < 3; k++) {    // parts of the same run, but for the first
     EXPECT_NEAR(std::stod(found[k][1]), kinetic[k], 1e-4);
-    EXPECT_NEAR(std::stod(found[k][2]), 0.0, 1e-9);
+    EXPECT_NEAR(std::stod(found[k][2]), 0.0, 1e-12);
     EXPECT_NEAR(std::stod(found[k][3]), k == 0 ? 0.0 : 6.4, 1e-2);
     EXPECT_NEAR(std::stod(found[k][4]), k == 0 ? 0.0 : 10.0, 1e-1);
     EXPECT_NEAR(std::stod(found[k][5]), added[k], 1e-2);
@@ -224,7 +224,7 @@ TEST(EnergyWatch, KnowsTheWorkOnManyPoints)
             body("block 4 44 0 20 INF INF", "density 2 neohookean 300 0.3", "1.0 gain error 0.02") +
             "fix g all gravity 1 vector 1 0 0\ntimestep 0.01\n");
   EXPECT_EQ(run.error("run 300\n"), "");
-  EXPECT_NEAR(run.v()[0][0], 3.0, 1e-9);    // g t: there was work
+  EXPECT_NEAR(run.v()[0][0], 3.0, 1e-12);    // g t: there was work
 }
 
 // A load on four of 16384 points, of which each step looks at one in 16: by these alone, numerical
@@ -318,7 +318,7 @@ TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
             "fix g all gravity 1 vector 1 0 0\ntimestep 0.01\n");
   EXPECT_EQ(run.error("run 300\n"), "");
   EXPECT_LT(run.lmp->atom->nfirst, run.n() / 2);
-  EXPECT_NEAR(run.v()[run.n() - 1][0], 3.0, 1e-6);    // g t
+  EXPECT_NEAR(run.v()[run.n() - 1][0], 3.0, 1e-12);    // g t
 }
 
 // What elements add to the forces on their nodes is the change of their stored energy, and no work
