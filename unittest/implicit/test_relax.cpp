@@ -265,6 +265,23 @@ SERIAL_TEST(Forces, HaveUnits)
   }
 }
 
+// of a cube on the lower face along any axis
+SERIAL_TEST(Forces, AreTheSameAlongAllAxes)
+{
+  const auto ratio = [](char axis) {
+    Scene run(space("lj", "f f f", "0 2 0 2 0 2") +
+              body("block 0 1 0 1 0 1", "density 1 linear 10 0.3", "0.25") +
+              strprintf("fix floor all mpm/boundary %clo slip\n", axis) +
+              strprintf("fix g all gravity 1 vector %d %d %d\n", -(axis == 'x'), -(axis == 'y'),
+                        -(axis == 'z')) +
+              "fix rest all mpm/relax 1e-8\ntimestep 0.01\nrun 40\n");
+    return run.fix("rest")->compute_scalar();
+  };
+  const double first = ratio('x');
+  EXPECT_GT(first, 1e-3);
+  for (const char axis : {'y', 'z'}) EXPECT_NEAR(ratio(axis), first, 1e-12) << axis;
+}
+
 // nothing acts on a body in free flight: what round-off does to velocities is no force
 SERIAL_TEST(Forces, AreZeroInFreeFlight)
 {

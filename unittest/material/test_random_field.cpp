@@ -136,9 +136,9 @@ TEST_F(Random, MomentsAndCorrelation)
   for (int d = 0; d < 4; d++)
     for (double c : pair[d]) EXPECT_NEAR(c, std::exp(-distance[d] * distance[d]), 1.5 * e);
 
-  // twice as many values along each axis: the squares of neighbors correlate by exp(-2 (1.05)^2),
+  // three times as many values along each axis: the squares of neighbors correlate by exp(-2 (1.05)^2),
   // of all neighbors of a value in sum by 0.83, which leaves 1/1.83 of them as independent values
-  const int dense = 2 * side;
+  const int dense = 3 * side;
   double variance = 0.0;
   for (int i = 0; i < dense * dense * dense; i++) {
     const double x[3] = {1.05 * length * (i % dense) - 1.5,
