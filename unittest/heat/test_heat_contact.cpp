@@ -178,8 +178,8 @@ SERIAL_TEST(HalfSpaces, Faces)
     }
 }
 
-// so in steps in which the exchange is faster than the limit that the step has for it, by little or by much
-SERIAL_TEST(HalfSpaces, FacesAtTheLimitOfSteps)
+// so in longer steps, in which stages keep up with the exchange
+SERIAL_TEST(HalfSpaces, FacesInLongSteps)
 {
   constexpr int n = 40;
   for (double step = 0.02; step < 0.6; step *= 1.3) {
@@ -192,7 +192,7 @@ SERIAL_TEST(HalfSpaces, FacesAtTheLimitOfSteps)
   }
 }
 
-// perfect contact: 1/3 at once, and errors that go away with the spacing
+// perfect contact, faster than the limit of a step: 1/3 at once, and errors that go away with the spacing
 SERIAL_TEST(Perfect, IsTheLimit)
 {
   for (const double shift : {0.0, 0.25, 0.5}) {
