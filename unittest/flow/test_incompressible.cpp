@@ -947,6 +947,10 @@ TEST(Tank, FirstTimeStep)
     Scene first(scene + fixes + "run 0\n");
     const double a = 0.25 * first.lmp->force->ftm2v;
     EXPECT_NEAR(first.lmp->update->dt / std::sqrt(1.0 / a), 0.35, 1e-12) << units;
+    // LAMMPS evaluates variables of fix gravity later
+    Scene varies(scene + "variable g equal 0.25\n" +
+                 replaced(fixes, "gravity 0.25", "gravity v_g") + "run 0\n");
+    EXPECT_EQ(varies.lmp->update->dt, first.lmp->update->dt) << units;
     EXPECT_NEAR(first.fix("w")->compute_vector(FILLED), 24.0, 1e-12);
     EXPECT_EQ(first.fix("w")->compute_vector(WET), 24.0);
 

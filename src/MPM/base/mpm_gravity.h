@@ -12,6 +12,7 @@
 #include "atom.h"
 #include "error.h"
 #include "fix.h"
+#include "fix_gravity.h"
 #include "lammps.h"
 #include "modify.h"
 
@@ -49,6 +50,15 @@ class MPMGravity {
                         fix->id);
   }
   bool empty() const { return fixes.empty(); }
+  /** Is a fix gravity one by variables, which has no vector before its first forces? */
+  static bool varies(const Fix *fix)
+  {
+    struct Gravity : public FixGravity {    // it does not tell
+      static bool varies(const FixGravity *fix) { return fix->*(&Gravity::varflag) != CONSTANT; }
+    };
+    const auto *const gravity = dynamic_cast<const FixGravity *>(fix);
+    return !gravity || Gravity::varies(gravity);
+  }
   /** The present force per mass [force/mass]. After init(); all ranks must call it. */
   void find(double gravity[3])
   {
@@ -70,11 +80,12 @@ class MPMGravity {
   void evaluate()
   {
     evaluated = true;
-    if (empty()) return;
+    if (std::none_of(fixes.begin(), fixes.end(), varies)) return;
     const std::size_t n = 3 * (std::size_t) atom->nlocal;
     double *const f = n ? &atom->f[0][0] : nullptr;
     const std::vector<double> kept(f, f + n);
-    for (auto *fix : fixes) fix->post_force(0);
+    for (auto *fix : fixes)
+      if (varies(fix)) fix->post_force(0);
     std::copy_n(kept.data(), n, f);
   }
 };

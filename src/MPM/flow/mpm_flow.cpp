@@ -8,6 +8,7 @@
 
 #include "flow/mpm_flow.h"
 
+#include "base/mpm_gravity.h"
 #include "base/mpm_points.h"
 #include "flow/mpm_flow_transfer.h"
 
@@ -582,7 +583,7 @@ double MPMFlow::stable_dt(tagint &tag) const
 double MPMFlow::limit_of_motion(double dt, tagint &tag) const
 {
   double g[3] = {0.0, 0.0, 0.0};
-  if (!forces_known && !(limit_before > 0.0)) momentum.find_gravity(g);
+  if (!forces_known && !(limit_before > 0.0)) MPMGravity{lmp}.find(g);
   const double least = FIRST_FALL * MathExtra::len3(g) * force->ftm2v;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!parts.cells.is_point(i)) continue;

@@ -9,12 +9,11 @@
 #include "flow/mpm_flow_momentum.h"
 
 #include "atom.h"
+#include "base/mpm_gravity.h"
 #include "comm.h"
 #include "error.h"
-#include "fix.h"
 #include "force.h"
 #include "math_extra.h"
-#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -49,16 +48,6 @@ const std::vector<double> *MPMFlowMomentum::surface_psi() const
 {
   if (parts.gas) return &parts.gas_rows->at_surface();
   return parts.tension ? &at_surface : nullptr;
-}
-
-void MPMFlowMomentum::find_gravity(double *g) const
-{
-  MathExtra::zero3(g);
-  for (auto *gravity : modify->get_fix_by_style("^gravity")) {
-    int width;
-    const auto *const acceleration = (const double *) gravity->extract("gvec", width);
-    for (int d = 0; d < parts.cells.lattice.dim; d++) g[d] += acceleration[d];
-  }
 }
 
 /* ----------------------------------------------------------------------
@@ -181,7 +170,7 @@ SolveReport MPMFlowMomentum::project(double duration, double rounding)
                           parts.tension ? &at_surface : nullptr);
   if (parts.bodies) {
     double g[3];
-    find_gravity(g);
+    MPMGravity{lmp}.find(g);
     MathExtra::scale3(force->ftm2v, g);
     parts.bodies->begin(duration, g, *parts.pressure);
   }

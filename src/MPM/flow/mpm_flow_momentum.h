@@ -33,8 +33,6 @@ class MPMFlowMomentum : protected Pointers {
   /** After solve(): pressures for points, and forces on walls and regions. pressure_to_psi: see
    *  MPMFlowGasRows::begin(). Collective. */
   void find_pressures(double pressure_to_psi);
-  /** Force per mass by all fix gravity, in units of forces. */
-  void find_gravity(double *g) const;
   /** [cell][dim] share of the gradient of the pressure that changes the velocity of a face; with
    *  grains or inflow. */
   const std::vector<double> &mobilities() const { return mobility; }

@@ -42,6 +42,7 @@
 #include "grains/fix_mpm_immersed.h"
 
 #include "atom.h"
+#include "base/mpm_gravity.h"
 #include "base/mpm_options.h"
 #include "comm.h"
 #include "domain.h"
@@ -51,7 +52,6 @@
 #include "field/mpm_halo.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_point_map.h"
-#include "fix_gravity.h"
 #include "force.h"
 #include "math_const.h"
 #include "math_extra.h"
@@ -236,20 +236,6 @@ void FixMPMImmersed::check_grains(const Fix *driver, double h)
                    id, large);
 }
 
-namespace {
-
-/** A fix gravity with variables has no vector before its first forces. It does not tell whether it
- *  has some. */
-struct Gravity : public FixGravity {
-  static bool is_constant(const Fix *fix)
-  {
-    const auto *const gravity = dynamic_cast<const FixGravity *>(fix);
-    return gravity && gravity->*(&Gravity::varflag) == CONSTANT;
-  }
-};
-
-}    // namespace
-
 /** Grains that fix gravity pulls down need the same gravity for their buoyancy, which is easily
  *  forgotten. One that varies cannot be that of the keyword, which is constant. */
 void FixMPMImmersed::setup(int)
@@ -258,7 +244,7 @@ void FixMPMImmersed::setup(int)
   std::vector<std::pair<int, const double *>> pulls;    // groups, and their force per mass
   for (auto *other : modify->get_fix_by_style("^gravity")) {
     int width;
-    if (!Gravity::is_constant(other)) return;
+    if (MPMGravity::varies(other)) return;
     pulls.emplace_back(other->groupbit, (const double *) other->extract("gvec", width));
   }
   struct {
