@@ -12,6 +12,7 @@
 #include "comm.h"
 #include "compute.h"
 #include "domain.h"
+#include "exceptions.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_affine.h"
 #include "field/mpm_cpdi.h"
@@ -336,7 +337,7 @@ class Scene {
         line.pop_back();
         continue;
       }
-      if (!line.empty()) lmp->input->one(line);
+      if (!line.empty()) execute(line);
       line.clear();
     }
   }
@@ -345,12 +346,15 @@ class Scene {
    *  error. */
   std::string error(const std::string &text)
   {
+    expected = true;
+    std::string message;
     try {
       commands(text);
     } catch (const std::exception &e) {
-      return e.what();
+      message = e.what();
     }
-    return "";
+    expected = false;
+    return message;
   }
 
   /** The first n values of the vector of a fix, valid until the next call. */
@@ -664,6 +668,21 @@ class Scene {
   MPMField *field(const std::string &id = "grid") { return MPMField::find(lmp, id); }
   MPMFrameTotal &total_frame() { return dynamic_cast<MPMFrameTotal &>(*field()->frame); }
 
+  /** An error on one process, that no test expects, ends all: the others would wait for it where
+   *  scenes and files are removed. */
+  void execute(const std::string &line)
+  {
+    try {
+      lmp->input->one(line);
+    } catch (const LAMMPSAbortException &e) {
+      if (expected || nranks() == 1) throw;
+      fprintf(stderr, "%s\n", e.what());
+      fflush(nullptr);
+      MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+  }
+
+  bool expected = false;    // a test asks for the message of an error
   std::vector<double> values;
   std::vector<std::array<double, 3>> references;
   std::function<void(double **)> callback;

@@ -21,19 +21,6 @@
 // used by LAMMPS's test fixture
 bool verbose = false;
 
-// an error of LAMMPS on one process only leaves the others waiting for it: end them all
-class EndAllProcesses : public ::testing::EmptyTestEventListener {
-  void OnTestPartResult(const ::testing::TestPartResult &result) override
-  {
-    if (!result.failed() ||
-        !strstr(result.message(), "C++ exception with description \"ERROR on proc"))
-      return;
-    fprintf(stderr, "%s\n", result.message());
-    fflush(nullptr);
-    MPI_Abort(MPI_COMM_WORLD, 1);
-  }
-};
-
 class ReportFailures : public ::testing::EmptyTestEventListener {
   int rank;
 
@@ -91,9 +78,6 @@ int main(int argc, char **argv)
     else if (strncmp(argv[i], "--file=", 7) == 0 && ::testing::GTEST_FLAG(filter) == "*")
       ::testing::GTEST_FLAG(filter) = tests_of(argv[i] + 7);
 
-  int nprocs;
-  MPI_Comm_size(MPI_COMM_WORLD, &nprocs);
-  if (nprocs > 1) ::testing::UnitTest::GetInstance()->listeners().Append(new EndAllProcesses);
   if (rank > 0) {
     auto &listeners = ::testing::UnitTest::GetInstance()->listeners();
     delete listeners.Release(listeners.default_result_printer());

@@ -190,6 +190,16 @@ TEST(Sheets, RanksAndRestart)
   }
 }
 
+// ghosts reach as far as faces need them, whatever the pair style has needed before
+TEST(Sheets, GhostsAfterALargerDistance)
+{
+  const ScratchFile file("ghosts.msh", folded(3, 6, 3, 0.05, 0.045));
+  Scene run(free_body(3, -0.3, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+            "pair_style mpm/sheet 0.3\npair_coeff * * 1e-9\nfix move all nve\ntimestep 1e-5\nrun 1\n"
+            "pair_style mpm/sheet 0.045 faces yes\npair_coeff * * 40\n");
+  EXPECT_EQ(run.error("run 1\n"), "");
+}
+
 // layers in the mesh that are closer than the distance are told once, and not after a restart
 TEST(Sheets, WarnsOfLayersThatAreTooClose)
 {

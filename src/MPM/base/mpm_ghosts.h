@@ -21,9 +21,9 @@
 
 namespace LAMMPS_NS {
 
-/** Atoms of other ranks up to this distance are to be ghosts. To be called by init() of a fix or of
- *  a pair style, before LAMMPS sets its communication up. A cutoff of the user that is larger
- *  stays. */
+/** Atoms of other ranks up to this distance are to be ghosts. To be called by init() of a fix, when
+ *  the cutoff of the pair style is known and LAMMPS's communication is not set up yet. A cutoff of
+ *  the user that is larger stays. */
 inline void need_ghosts_within(LAMMPS *lmp, double distance)
 {
   auto *const comm = lmp->comm;

@@ -183,7 +183,8 @@ void FixMPMElements::init()
   if (bending) internal->find_bending_frequency(groupbit, nodes.ids);
 
   // nodes of elements may be ghosts; elements that have stretched since need comm_modify
-  need_ghosts_within(lmp, largest_extent());
+  need_ghosts_within(lmp, largest_extent() + reached_from);
+  reached_from = 0.0;    // the pair style may be another one in the next run
 }
 
 std::vector<NearNodes::Edge> FixMPMElements::edges() const
@@ -191,8 +192,8 @@ std::vector<NearNodes::Edge> FixMPMElements::edges() const
   return gather_on_all(body->edges(nodes.ids.low), world);
 }
 
-/** An upper bound for the distance of nodes of an element, with room for more deformation: the
- *  Frobenius norm of F is sqrt(dim) without deformation. */
+/** An upper bound for the distance of nodes of an element on all ranks, with room for more
+ *  deformation: the Frobenius norm of F is sqrt(dim) without deformation. Collective. */
 double FixMPMElements::largest_extent() const
 {
   const auto extents = body->extents();

@@ -137,9 +137,9 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
    *  Collective. */
   double widest_gap() const { return surface->widest_gap(); }
 
-  /** Largest distance between two nodes of an element on all ranks, with room for further
-   *  deformation. Collective. */
-  double largest_extent() const;
+  /** What is up to this distance from an element will need all nodes of it as ghosts in the next
+   *  run. For init_style() of a pair style, which does not know its cutoffs yet. */
+  void will_be_reached_from(double distance) { reached_from = distance; }
 
   /** Faces of the elements of this rank, where these form a surface. */
   std::vector<MPM_NS::ElementBody::Face> faces() const { return body->faces(); }
@@ -153,6 +153,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   ElementNodes nodes;
   bool has_lattice = true;      // does a fix mpm move the nodes?
   MPMUncoupled uncoupled;       // other matter, if none does
+  double reached_from = 0.0;    // see will_be_reached_from()
   bool warned_slack = false;    // in this run
   double spent = 0.0;    // plastic and other dissipated work without a lattice, this rank's share
   class FixMPMMaterial *material;    // found again at the start of each run
@@ -170,6 +171,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   std::vector<double> motion, sent;    // [local and ghost][3] trial displacements; for messages
 
   std::string names_of_history() const;
+  double largest_extent() const;
   void make_elements(const MPM_NS::Mesh &);
   /** Puts rows in the order of the atoms that own them, without those that none owns. */
   void sort_rows();

@@ -12,7 +12,6 @@
 #include "elements/pair_mpm_sheet.h"
 
 #include "atom.h"
-#include "base/mpm_ghosts.h"
 #include "base/mpm_lists.h"
 #include "comm.h"
 #include "domain.h"
@@ -45,7 +44,7 @@ void PairMPMSheet::find_faces_of(Body &body) const
   body.first.assign(body.elements->number_of_nodes() + 1, 0);
   for (const auto &face : body.faces) body.first[face.low + 1]++;
   for (std::size_t i = 1; i < body.first.size(); i++) body.first[i] += body.first[i - 1];
-  need_ghosts_within(lmp, distance + neighbor->skin + body.elements->largest_extent());
+  body.elements->will_be_reached_from(distance + neighbor->skin);
 }
 
 /** All faces of which this rank has the nodes, each image once. Returns the length of the longest
