@@ -73,7 +73,7 @@ FAILURES = ("crash", "hang", "nan", "mass", "momentum", "ranks", "restart", "che
 
 # all processes are on one machine: see unittest/CMakeLists.txt
 ENVIRONMENT = {
-    "OMP_NUM_THREADS": "1", "LAMMPS_POTENTIALS": os.path.join(ROOT, "potentials"),
+    "OMP_NUM_THREADS": "1", "MALLOC_PERTURB_": "128", "LAMMPS_POTENTIALS": os.path.join(ROOT, "potentials"),
     "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none", "OMPI_MCA_pml": "ob1", "OMPI_MCA_mtl": "^ofi",

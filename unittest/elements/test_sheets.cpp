@@ -194,9 +194,10 @@ TEST(Sheets, RanksAndRestart)
 TEST(Sheets, GhostsAfterALargerDistance)
 {
   const ScratchFile file("ghosts.msh", folded(3, 6, 3, 0.05, 0.045));
-  Scene run(free_body(3, -0.3, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
-            "pair_style mpm/sheet 0.3\npair_coeff * * 1e-9\nfix move all nve\ntimestep 1e-5\nrun 1\n"
-            "pair_style mpm/sheet 0.045 faces yes\npair_coeff * * 40\n");
+  Scene run(
+      free_body(3, -0.3, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+      "pair_style mpm/sheet 0.3\npair_coeff * * 1e-9\nfix move all nve\ntimestep 1e-5\nrun 1\n"
+      "pair_style mpm/sheet 0.045 faces yes\npair_coeff * * 40\n");
   EXPECT_EQ(run.error("run 1\n"), "");
 }
 

@@ -173,6 +173,19 @@ SERIAL_TEST(Immersed, SinksWithTheTerminalVelocity)
   }
 }
 
+SERIAL_TEST(Immersed, TellsOfTheOrderOfFixes)
+{
+  const std::string move = "group grains type 2\nfix move grains nve/sphere\n",
+                    start = head("0 8 0 8 0 12", "p p p", "transfer apic"),
+                    end = "create_points 1 box ppc 2\ncreate_atoms 2 single 4.1 4.2 8.3\n"
+                          "set type 2 diameter 0.2 density 3.0\n" +
+      rest("0.1 drag schiller gravity 0 0 -1", "eos tait 500.0 7 viscosity newtonian 0.1"),
+                    run = "timestep 0.01\nrun 1\nrun 1\n";
+  const std::string words = "fix move moves grains before fix";
+  EXPECT_EQ(times_said(start + end + move + run, words), 0);
+  EXPECT_EQ(times_said(replaced(start, "fix grid", move + "fix grid") + end + run, words), 1);
+}
+
 /** Two grains as dense as water stay where they are; mean: of their buoyancy and of their drag. */
 static void expect_buoyancy(Scene &run, int axis, double volume, const double *mean)
 {

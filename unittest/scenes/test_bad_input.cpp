@@ -263,6 +263,10 @@ static const Change doubts[] = {
      "0\\.26[0-9]* .*: use fix mpm/dt 0\\.5"},
     {"SmallTimeStep", TIMESTEP, "timestep 1e-8\n",
      "time step 1e-08 is far below the limit 0\\.26[0-9]* of .* would take 1[0-9]{7} times fewer"},
+    {"SmallTimeStepForHeat", TIMESTEP,
+     "unfix soft\nfix soft all mpm/material density 1.0 neohookean 10.0 0.3 thermal conducting 1.0 "
+     "0.0 1.0\nfix heat all mpm/heat\ntimestep 1e-8\n",
+     ""},
     {"TimeStepOfFix", TIMESTEP, "fix dt all mpm/dt 0.5\n", ""},
     {"SmallTimeStepOfFix", TIMESTEP, "fix dt all mpm/dt 0.5 max 1e-8\n", ""},
     {"SmallTimeStepOfLAMMPS", TIMESTEP, "fix dt all dt/reset 1 1e-9 1e-8 1.0\n", ""},

@@ -67,6 +67,21 @@ SERIAL_TEST(Doubts, WaterAndSoil)
             2);    // with a weight, in each run
 }
 
+// the weight of a column of 0.4 m is 3.9 kPa, and the modulus of its lateral confinement 1.35 E
+SERIAL_TEST(Doubts, SolidsSofterThanTheirWeight)
+{
+  const auto scene = [](double E, const std::string &more) {
+    return START + GRID + strprintf("fix m all mpm/material density 1000 neohookean %g 0.3\n", E) +
+        more + replaced(STEP, "0.5", "0.5 max 0.001");
+  };
+  const std::string words = "it is pressed flat where it stands",
+                    weight = "fix g all gravity 9.81 vector 0 -1 0\n";
+  EXPECT_EQ(told(scene(1e3, weight), words), 1);
+  EXPECT_EQ(told(scene(1e5, weight), words), 0);
+  EXPECT_EQ(told(scene(1e3, ""), words), 0);
+  EXPECT_EQ(told(scene(1e3, replaced(weight, "9.81", "0.0981")), words), 0);
+}
+
 SERIAL_TEST(Doubts, NobodyHasSetTheTimeStep)
 {
   const std::string words = "is the default of units si, which no command has changed";

@@ -270,6 +270,23 @@ TEST(RestartState, TimeStepIsThatWithoutTheFile)
   EXPECT_EQ(early.error("write_restart " + file.name + " noinit\n"), "");
 }
 
+// what is done in some steps only counts them itself, or by steps of the run
+SERIAL_TEST(ResetTimestep, ChangesNothing)
+{
+  const std::string scene = plane("si", "f f", "0 1 0 1", 2, 0.02) +
+      "fix grid all mpm 0.05\nregion b block 0.2 0.8 0.2 0.6 INF INF\n"
+      "create_points 1 region b ppc 2\nregion e block 0.2 0.3 0.8 0.9 INF INF\n"
+      "fix m all mpm/material density 1000 neohookean 1e5 0.3 thermal conducting 500 293 50\n"
+      "fix h all mpm/heat every 7 surface convection 500 400\nfix w all mpm/boundary ylo separate\n"
+      "fix g all gravity 9.81 vector 0 -1 0\ntimestep 1e-3\n"
+      "fix e all mpm/emit 2 region e velocity 0 -2 0\nrun 53\n";
+  Scene whole(scene + "run 60\n");
+  for (const int step : {0, 52, 1000}) {
+    Scene parts(scene + strprintf("reset_timestep %d\nrun 60\n", step));
+    EXPECT_TRUE(identical(whole.gather(), parts.gather())) << step;
+  }
+}
+
 // bytes that have changed on a disk are seen, in each state of a fix, and in what belongs to a point
 SERIAL_TEST(RestartFile, DamageIsSeen)
 {

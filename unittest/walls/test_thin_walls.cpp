@@ -225,14 +225,14 @@ SERIAL_TEST(ThinRegions, AreReported)
     // blades on which the block stands: between nodes, with nodes, and one that is wide enough
     EXPECT_TRUE(told(lower, "block 1.01 1.04 0 0.4 INF INF", kind));
     EXPECT_TRUE(told(lower, "block 0.99 1.02 0 0.4 INF INF", kind));
-    EXPECT_FALSE(told(lower, "block 0.9 1.1 0 0.4 INF INF", kind));
+    EXPECT_FALSE(told(lower, "block 0.96 1.04 0 0.4 INF INF", kind));
     EXPECT_TRUE(told(lower, wire, kind));
     EXPECT_TRUE(told(lower, "union 2 far wire", kind,
                      "region wire " + wire + "\nregion far block -9 -8 -9 -8 INF INF\n"));
     // a plate within the block, one below it, and one that is thick
     EXPECT_TRUE(told(both, "block 0 2 0.51 0.54 INF INF", kind));
     EXPECT_FALSE(told(lower, "block 0 2 0.37 0.4 INF INF", kind));
-    EXPECT_FALSE(told(both, "block 0 2 0.5 0.7 INF INF", kind));
+    EXPECT_FALSE(told(both, "block 0 2 0.5 0.6 INF INF", kind));
   }
   // lines hold what is in front of a plate of any thickness, see ThinPlate.CarriesABlock
   for (const char *kind : {"slip", "stick"})
