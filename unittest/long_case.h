@@ -13,9 +13,19 @@
 #include <string>
 #include <vector>
 
+namespace MPM_TEST {
+
+/** Is what takes long left out? */
+inline bool is_quick()
+{
+  return getenv("MPM_QUICK");
+}
+
+}    // namespace MPM_TEST
+
 /** A case that takes long begins with this. */
 #define LONG_CASE() \
-  if (getenv("MPM_QUICK")) GTEST_SKIP() << "a long one: tools/test.sh all"
+  if (MPM_TEST::is_quick()) GTEST_SKIP() << "a long one: tools/test.sh all"
 
 /** So does a PARAMETER_TEST of which the first n parameters are enough to see most mistakes. */
 #define LONG_AFTER(n) \
@@ -34,7 +44,7 @@ inline int parameter_number()
 template <class T> std::vector<T> first_of(std::size_t few, std::initializer_list<T> values)
 {
   std::vector<T> list(values);
-  if (getenv("MPM_QUICK") && few < list.size()) list.erase(list.begin() + few, list.end());
+  if (is_quick() && few < list.size()) list.erase(list.begin() + few, list.end());
   return list;
 }
 

@@ -235,7 +235,7 @@ SERIAL_TEST(Friction, BlockSlidesOrSticks)
 {
   const double g = 9.81, sine = 0.5, cosine = std::sqrt(0.75);
   for (const char *transfer : first_of(1, {"apic", "flip 1.0"}))
-    for (const double mu : {0.0, 0.1, 0.3, 0.55, 0.6}) {
+    for (const double mu : first_of(3, {0.3, 0.55, 0.6, 0.0, 0.1})) {
       SCOPED_TRACE(std::string(transfer) + " " + std::to_string(mu));
       Scene run(settled(transfer, std::to_string(mu)) + "run 900 post no\n");
       const Slide slide(run);

@@ -100,6 +100,7 @@ static double cone_of_finite_elements(double E)
 
 TEST(Indentation, ConeLikeFiniteElements)
 {
+  LONG_CASE();
   const double E = 250.0, exact = cone_of_finite_elements(E);
   EXPECT_NEAR(exact, 87.2, 0.1);
   double error[2];
@@ -126,7 +127,7 @@ TEST(Indentation, ConeLikeFiniteElements)
 TEST(Indentation, ConeThatIsAWall)
 {
   const double E = 250.0, exact = cone_of_finite_elements(E);
-  for (const double h : {0.5, 0.25}) {
+  for (const double h : first_of(1, {0.5, 0.25})) {
     const auto tool = press(cone, E, h, 0.6, 6.0, strprintf("plane 0 0 0 %g 1 0", -SLOPE));
     double mean = 0.0;
     for (int n = 80; n < 100; n++) mean += tool.force[n] / (tool.depth[n] * tool.depth[n]) / 20;

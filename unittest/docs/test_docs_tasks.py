@@ -159,6 +159,7 @@ def test_two_bodies():
 
 
 def test_grains():
+    mt.long_case()
     folder = mt.scratch_folder()
     run_page("Howto_mpm_grains", folder)
     _, t, momentum, floor, z = columns(os.path.join(folder, "grains.txt"))
@@ -237,6 +238,7 @@ def test_until():
 
 
 def test_pictures():
+    mt.long_case()
     folder = mt.scratch_folder()
     output = run_page("Howto_mpm_pictures", folder)[0]
     names = os.listdir(folder)

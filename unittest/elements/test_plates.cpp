@@ -126,7 +126,7 @@ SERIAL_TEST(Bending, Strips)
 // of that plate, 10.21583 sqrt(D/rho t)/a^2
 SERIAL_TEST(Bending, ClampedCircularPlate)
 {
-  for (const int n : {6, 12}) {
+  for (const int n : first_of(1, {6, 12})) {
     const double a = 0.5, t = 0.05, dr = a / (n + 0.5);
     const Plate plate(t, 1e6, 0.3, rings_of_triangles(n + 2, (n + 2) * dr));
     const double D = plate.stiffness(), omega = 10.21583 * sqrt(D / (DENSITY * t)) / (a * a),
@@ -156,12 +156,13 @@ SERIAL_TEST(Bending, ClampedCircularPlate)
 // a square on supports, 0.00406235 q L^4/D, whose diagonals are parallel or alternate
 SERIAL_TEST(Bending, SupportedSquare)
 {
-  const struct {
+  struct Case {
     int n;
     bool alternate;
     double tolerance;
-  } cases[] = {{10, false, 0.005}, {20, false, 0.005}, {10, true, 0.02}};
-  for (const auto &c : cases) {
+  };
+  for (const auto &c :
+       first_of(2, {Case{10, false, 0.005}, Case{10, true, 0.02}, Case{20, false, 0.005}})) {
     const Plate plate(0.1, 1e6, 0.3, square_of(c.n, c.alternate));
     const double t = plate.thickness, D = plate.stiffness(), w0 = 0.01 * t, q = w0 * D / 0.00406235,
                  in = 0.5 - 0.1 / c.n;
@@ -184,7 +185,7 @@ SERIAL_TEST(Bending, SupportedSquare)
 // clamp, where the curvature jumps, and more of it where diagonals change direction
 SERIAL_TEST(Bending, ClampedSquare)
 {
-  for (const bool alternate : {false, true}) {
+  for (const bool alternate : first_of(1, {false, true})) {
     const int n = 24;
     const Plate plate(0.05, 1e6, 0.3, square_of(n, alternate));
     const double L = 21.0 / n, t = plate.thickness, D = plate.stiffness(), w0 = 0.01 * t;
@@ -243,7 +244,7 @@ SERIAL_TEST(Bending, FreeSquare)
 // two pairs of opposite forces of 2 on a closed hemisphere: 0.0924 (R 10, t 0.04, E 6.825e7)
 SERIAL_TEST(Bending, PinchedHemisphere)
 {
-  for (const int divisions : {2, 3}) {
+  for (const int divisions : first_of(1, {2, 3})) {
     const double F = 0.02, R = 10.0;
     const ThinMesh half = {{{R, 0, 0}, {-R, 0, 0}, {0, R, 0}, {0, -R, 0}, {0, 0, R}},
                            {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}}};
@@ -273,7 +274,7 @@ SERIAL_TEST(Bending, PinchedCylinder)
 {
   const int around = 32, rows = 10;
   const double R = 300.0, L = 600.0, F = 1000.0;
-  for (const int kind : {0, 1, 2}) {
+  for (const int kind : first_of(1, {0, 1, 2})) {
     const bool alternate = kind == 1, shifted = kind == 2;    // rows by half an edge
     Plate shell(3.0, 3e6, 0.3);
     if (shifted) shell.bending = "linear";
@@ -341,6 +342,7 @@ SERIAL_TEST(Bending, ForceOnOneNode)
 // the Scordelis-Lo roof under a hundredth of its weight: 0.3024 for all of it at its free edges
 SERIAL_TEST(Bending, ScordelisLoRoof)
 {
+  LONG_CASE();
   double w[2];
   for (int fine = 0; fine < 2; fine++) {
     const int n = fine ? 20 : 10;

@@ -300,6 +300,7 @@ SERIAL_TEST(Sheet, DoesNotHoldAStrip)
 // their own they part, and become a cushion of 0.1213 m^3
 SERIAL_TEST(Airbag, SheetsInFieldsOfTheirOwnPart)
 {
+  LONG_CASE();
   const int n = 24;
   std::vector<Node> x;
   std::vector<std::vector<int>> f;

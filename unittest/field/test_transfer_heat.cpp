@@ -140,7 +140,7 @@ static Noh noh(const std::string &options, int cells, double dt)
 SERIAL_TEST(Noh, ConvergesWithHeat)
 {
   for (const char *options : {"heat yes", "shape cubic heat yes", "scheme musl heat yes"})
-    for (const int cells : {100, 200})
+    for (const int cells : first_of(1, {100, 200}))
       for (const double dt : {0.05, 0.0125}) {
         if (dt < 0.05 && (*options != 'h' || cells > 100)) continue;
         const Noh now = noh(options, cells, dt);

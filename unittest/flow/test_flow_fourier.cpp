@@ -91,8 +91,8 @@ TEST(Fourier, IterationsInOtherShapes)
   const std::string shapes[] = {"(y<0.4+0.2*x)", "((x-0.5)^2+(y-0.5)^2<0.09)", splashes()};
   const int reference[3][3] = {{14, 18, 22}, {15, 19, 25}, {28, 39, 53}};
   for (int shape = 0; shape < 3; shape++) {
-    int many[3];
-    for (int k = 0; k < 3; k++) {
+    int many[3] = {0, 0, 0};
+    for (const int k : first_of(2, {0, 1, 2})) {
       const int n = 32 << k;
       many[k] = iterations(water(2, "f f", n, "0 1 0 1", shapes[shape]) + flow(n, SOLVER));
       EXPECT_LE(measured("iterations", many[k]), reference[shape][k]) << shapes[shape] << " " << n;

@@ -192,8 +192,8 @@ SERIAL_TEST(FlowSolids, WavesOfShear)
 // a layer sheared by the fluid above it: of second order, wherever the interface is in a cell
 SERIAL_TEST(FlowSolids, LayerUnderAFlow)
 {
-  for (const double density : {1.0, 2.0})
-    for (const double a : {0.5, 0.5625}) {
+  for (const double density : first_of(1, {2.0, 1.0}))
+    for (const double a : first_of(1, {0.5625, 0.5})) {
       const Layer layer = {a, density, 0.1, 1.0, 4.0};
       const double coarse = error_of_layer(8, layer), fine = error_of_layer(16, layer);
       EXPECT_LT(coarse, 0.05);
@@ -217,12 +217,14 @@ SERIAL_TEST(FlowSolids, DiskInACavity)
 SERIAL_TEST(FlowSolids, HeavyDiskSinks)
 {
   const char *const aflip = "transfer aflip 1.0";
-  const struct {
+  struct Case {
     double a, at, G, dt;
     const char *transfer;
-  } cases[] = {{2, 0.0, 1.0, 0.12, aflip}, {2, 0.5, 1.0, 0.12, aflip}, {2, 0.0, 4.0, 0.06, aflip},
-               {4, 0.0, 1.0, 0.12, aflip}, {2, 0.0, 1.0, 0.03, ""},    {2, 0.5, 1.0, 0.12, ""}};
-  for (const auto &c : cases) {
+  };
+  for (const auto &c : first_of(3,
+                                {Case{2, 0.5, 1.0, 0.12, aflip}, Case{2, 0.5, 1.0, 0.12, ""},
+                                 Case{2, 0.0, 1.0, 0.12, aflip}, Case{2, 0.0, 4.0, 0.06, aflip},
+                                 Case{2, 0.0, 1.0, 0.03, ""}, Case{4, 0.0, 1.0, 0.12, aflip}})) {
     const auto gap = [&](double radius) {
       const double k = radius / (4.0 * c.a);
       return -std::log(k) - 0.9157 + 1.7244 * std::pow(k, 2) - 1.7302 * std::pow(k, 4) +

@@ -126,8 +126,8 @@ const double EFFUSIVITY = std::sqrt(K * STEEL);
 SERIAL_TEST(Brake, HeatsBothFaces)
 {
   EXPECT_NEAR(rise(0.5 * END, 2.0 * EFFUSIVITY), 18.06853, 1e-5);
-  double error[3];
-  for (const int k : first_of(2, {0, 1, 2})) {
+  double error[3] = {0.0, 0.0, 0.0};
+  for (const int k : first_of(1, {0, 1, 2})) {
     Braked b = {2.0 * (1 << k)};
     b.ramp = 0.02;
     Scene run(b.scene());

@@ -165,7 +165,7 @@ PARAMETER_TEST(Convection, CoolsASlab, Slab,
                       Slab{0.1, 1.0, 0.922389, 0.878126}, Slab{10.0, 0.1, 0.968424, 0.170574}))
 {
   const Slab slab = GetParam();
-  for (const double offset : {0.0, 0.25, 0.5}) {
+  for (const double offset : first_of(1, {0.25, 0.0, 0.5})) {
     Scene run(bar(40, strprintf("xhi convection %g 0.0", slab.Bi), offset, "", 1.0));
     Warm warm(run);
     const double before = warm.heat(), h = 1.0 / 40;
@@ -339,7 +339,7 @@ static double one_stage(const std::string &scene)
 SERIAL_TEST(Corner, IsStable)
 {
   for (const int dim : {2, 3})
-    for (const double offset : {0.0, 0.025, 0.05})
+    for (const double offset : first_of(1, {0.025, 0.0, 0.05}))
       for (const double H : {0.03, 0.1, 1e3}) {
         const std::string on = strprintf(" convection %g 0.0 ", H);
         const std::string scene = block(

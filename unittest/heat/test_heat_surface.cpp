@@ -378,6 +378,8 @@ SERIAL_PARAMETER_TEST(Edge, DoesNotDependOnTheTimeStep, const char *,
   LONG_CASE();
   std::string heat = GetParam();
   const bool radiates = heat.find("radiation") != std::string::npos;
+  // long steps limit rates of a free surface at edges, too
+  const double bound = heat.find("surface convection") != std::string::npos ? 0.016 : 0.005;
   if (heat.find("surface") == std::string::npos)
     heat += " region right convection 0.01 0.5 region top convection 0.01 0.5";
   for (const char *shape : {"", "shape bernstein frame total"})
@@ -394,7 +396,7 @@ SERIAL_PARAMETER_TEST(Edge, DoesNotDependOnTheTimeStep, const char *,
         power[is_long] = {measured("power", all[9]), measured("power", all[10])};
       }
       for (int k = 0; k < 2; k++)
-        EXPECT_NEAR(power[1][k] / power[0][k], 1.0, 0.02) << offset << shape;
+        EXPECT_NEAR(power[1][k] / power[0][k], 1.0, bound) << offset << shape;
     }
 }
 

@@ -157,7 +157,7 @@ SERIAL_TEST(Beam, StaysWhereItIs)
 
   Scene total(scene("frame total") + "run 1\n");
   const double exact = total.compute_scalar("low");
-  for (const char *options : {"", "stress gradient", "shape cubic"}) {
+  for (const char *options : first_of(2, {"", "shape cubic", "stress gradient"})) {
     Scene run(scene(options) + "run 1\n");
     const double once = run.compute_scalar("low");
     EXPECT_NEAR(measured(strprintf("%s: over that of the total frame", options), once / exact), 1.0,
@@ -467,8 +467,8 @@ SERIAL_TEST(Bar, LedgerInLongSteps)
 // the ledger closes in dynamics, and knows what backward Euler takes
 SERIAL_TEST(Beam, EnergiesOfDynamics)
 {
-  for (const std::string method :
-       {"euler", "newmark", "midpoint", "midpoint apic", "alpha", "hht rho 0.5"}) {
+  for (const std::string &method : first_of<std::string>(
+           3, {"euler", "newmark", "midpoint apic", "midpoint", "alpha", "hht rho 0.5"})) {
     const bool affine = method == "midpoint apic";
     const auto implicit = affine ? "midpoint" : method;
     Scene run(replaced(beam(4, affine ? "" : "transfer flip 1.0", 1.0,
@@ -511,11 +511,14 @@ SERIAL_TEST(Multigrid, ComesToTheSame)
     return beam(4, options, 20.0, "", "linear 1e8 0");
   };
   for (const auto &c :
-       {Case{"beam", slender("frame total"), 8.0},
-        Case{"cubic", slender("frame total shape cubic"), 4.0}, Case{"updated", slender(""), 4.0},
-        Case{"gimp", slender("shape gimp transfer pic"), 2.0},
-        Case{"linear", slender("shape linear transfer pic frame total"), 4.0},
-        Case{"ball", block(2), 1.0}, Case{"ball in space", block(3), 1.0}, Case{"tube", tube, 1.0}})
+       first_of(4,
+                {Case{"beam", slender("frame total"), 8.0},
+                 Case{"linear", slender("shape linear transfer pic frame total"), 4.0},
+                 Case{"ball", block(2), 1.0}, Case{"tube", tube, 1.0},
+                 Case{"cubic", slender("frame total shape cubic"), 4.0},
+                 Case{"updated", slender(""), 4.0},
+                 Case{"gimp", slender("shape gimp transfer pic"), 2.0},
+                 Case{"ball in space", block(3), 1.0}}))
     for (const std::string method : {"static", "euler"})
       expect_same_with_levels(c.name, c.scene, method, method == "static" ? c.fewer : 0.0);
 }

@@ -345,6 +345,7 @@ SERIAL_TEST(Block, BearsUpToItsEdges)
 {
   const std::string base = "0.1 1.7 0.1 1.1 0 0.2", block = "0.3 1.1 0.3 0.9 0.2 0.8";
   EXPECT_NEAR(measured("block of 6 cells", settlement(base, block, 0.1)), 1.0, 0.08);
+  if (is_quick()) return;    // these take long
   EXPECT_NEAR(measured("bars", settlement("0.1 1.5 0.5 0.9 0 0.4", "0.6 1 0.1 1.1 0.4 0.8", 0.1)),
               1.0, 0.4);
 }

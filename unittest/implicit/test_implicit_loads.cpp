@@ -84,9 +84,10 @@ SERIAL_TEST(Bar, Stretches)
     bool follows;
     double load, stretch;
   };
-  for (const auto &c :
-       {Case{false, 2e5, 1.232989}, Case{true, 2e5, 1.204529}, Case{false, -2e5, .828311},
-        Case{true, -2e5, .809486}, Case{false, 5e5, 1.713567}, Case{true, 5e5, 1.511761}}) {
+  for (const auto &c : first_of(2,
+                                {Case{false, 2e5, 1.232989}, Case{true, 2e5, 1.204529},
+                                 Case{false, -2e5, .828311}, Case{true, -2e5, .809486},
+                                 Case{false, 5e5, 1.713567}, Case{true, 5e5, 1.511761}})) {
     Scene run(bar(c.follows ? "pressure v_T" : "traction v_T 0 0", c.follows ? -c.load : c.load,
                   std::fabs(c.load) > 2e5 ? "solver multigrid" : ""));
     run.set_reference();

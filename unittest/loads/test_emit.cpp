@@ -291,6 +291,7 @@ run 39
 // a jet on a wall and on a plate at 60 degrees (benchmark S5): force, flow rates, mass
 SERIAL_TEST(Jet, OnAWall)
 {
+  LONG_CASE();
   Scene run(jet("region inlet block 0.03 0.13 -0.047 0.053 INF INF\n", "2 0 0", 0.0125));
   run.commands("run 5200\n");
   const int steps = 2600;    // 10 B/U
@@ -314,6 +315,7 @@ SERIAL_TEST(Jet, OnAWall)
 
 SERIAL_TEST(Jet, ObliqueOnAPlate)
 {
+  LONG_CASE();
   // direction (sin 60, cos 60), 0.1 long and wide, with the middle of the end at 0.25 -0.2
   const double s = std::sqrt(0.75), c = 0.5, x = 0.16, y = -0.25, a = 0.05;
   const auto flat = [&](const char *name, double px, double py, double nx, double ny) {
@@ -397,8 +399,9 @@ thermo_style custom step c_e
   // a jet at a plate; ranks share the inlet
   const std::string plate = "region plate block 0.8 0.9 1 2 INF INF\n";
   const std::string head = plane("si", "f f", "0 1.6 0 2", 1, 0.025) + plate;
-  for (const char *options :
-       {"", "shape linear transfer flip 0.99 scheme musl", "shape gimp transfer aflip 0.95"}) {
+  for (const char *options : first_of(
+           1,
+           {"", "shape linear transfer flip 0.99 scheme musl", "shape gimp transfer aflip 0.95"})) {
     const auto all = replaced(fixes, "MPM_OPTIONS", options);
     Twins twins(head + all, 500, "neighbor 0.025 bin\n" + plate + all, 150, 1e-9);
     EXPECT_GT(twins.whole.fix("out")->compute_scalar(), 10.0) << options;

@@ -322,13 +322,15 @@ SERIAL_TEST(Pipe, Widens)
     const char *options, *load;
     double p, a, b;
   };
-  for (const auto &c :
-       {Case{"", "pressure v_T", 0.1, 1.081304, 2.052546},
-        Case{"frame total", "pressure v_T", 0.2, 1.183161, 2.120533},
-        Case{"", "pressure v_T area 1.5707963267948966", 0.2, 1.183161, 2.120533},
-        Case{"", "pressure v_T area 1.5707963267948966", 0.4, 1.502870, 2.347360},
-        Case{"shape cubic", "pressure v_T area 1.5707963267948966", 0.4, 1.502870, 2.347360},
-        Case{"frame total", "pressure v_T area 1.5707963267948966", 0.4, 1.502870, 2.347360}}) {
+  for (const auto &c : first_of(
+           3,
+           {Case{"", "pressure v_T", 0.1, 1.081304, 2.052546},
+            Case{"frame total", "pressure v_T", 0.2, 1.183161, 2.120533},
+            Case{"", "pressure v_T area 1.5707963267948966", 0.2, 1.183161, 2.120533},
+            Case{"", "pressure v_T area 1.5707963267948966", 0.4, 1.502870, 2.347360},
+            Case{"shape cubic", "pressure v_T area 1.5707963267948966", 0.4, 1.502870, 2.347360},
+            Case{"frame total", "pressure v_T area 1.5707963267948966", 0.4, 1.502870,
+                 2.347360}})) {
     const auto scene = rubber_pipe(c.options, c.load, c.p);
     Scene run(scene.substr(0, scene.find("variable T")));
     run.set_reference();

@@ -26,7 +26,7 @@ SERIAL_TEST(Consolidation, Terzaghi)
     }
     EXPECT_LT(rms[1], 0.002);
   }
-  for (const double offset : {0.0, 0.3, 0.5}) {
+  for (const double offset : first_of(1, {0.3, 0.0, 0.5})) {
     const auto result =
         consolidate(20, "free pressure 0", 1.2, offset, first_of(1, {2.2e8, 2.2e9}).back());
     EXPECT_LT(measured(strprintf("free, offset %g, rms", offset), result.rms), 0.002);

@@ -87,13 +87,14 @@ double friction(Scene &run, double slope, double coefficient)
 // an infinite slope with seepage: friction is that of the submerged weight, not half of the total
 SERIAL_TEST(Contact, FrictionIsThatOfGrains)
 {
-  for (const double offset : {0.0, 0.3}) {
+  for (const double offset : first_of(1, {0.3, 0.0})) {
     Scene run(on_body("coulomb 0.5", 0.35, offset));
     EXPECT_NEAR(measured(strprintf("offset %g, friction", offset), friction(run, 0.35, 0.5)), 1.0,
                 0.005);
   }
   Scene other(on_body("coulomb 0.5", 0.35, 0.5, 2, "lower grid"));
   EXPECT_NEAR(measured("soil is the second body", friction(other, 0.35, 0.5)), 1.0, 0.005);
+  if (is_quick()) return;    // the others take long
   // a stiff one, which the layer does not press into
   Scene stiff(replaced(on_body("coulomb 0.5", 0.35, 0.0), "linear 1e8", "linear 1e9"));
   EXPECT_NEAR(measured("stiff, friction", friction(stiff, 0.35, 0.5)), 1.0, 0.005);
@@ -199,7 +200,7 @@ double share_of_water(double K)
 SERIAL_TEST(Plate, BearsTheTotalStress)
 {
   const ScratchFile file("plate.stl", text_of(plate()));
-  for (const char *kind : {"stick", "slip", "separate", "separate friction 0.3"})
+  for (const char *kind : first_of(2, {"slip", "separate friction 0.3", "separate", "stick"}))
     for (const double offset : {0.0, 0.4}) {
       if (offset > 0.0 && kind[1] == 't') continue;
       Scene run(under_plate(file.name, "2.2e8 1000 9810 soil m 0.4 constant 1e-9",

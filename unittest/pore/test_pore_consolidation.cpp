@@ -106,8 +106,10 @@ PARAMETER_TEST(
   for (const double T : {0.05, 0.06, 0.065, 0.07, 0.075, 0.08, 0.09})
     peak = std::max(peak, pressure(T));
   EXPECT_NEAR(measured("peak", peak) / strip.peak, 1.0, 0.01);
-  for (const auto &at : strip.decay)
+  for (const auto &at : strip.decay) {
+    if (at.T > 0.1 && is_quick()) return;    // takes long
     EXPECT_NEAR(measured(strprintf("T %g", at.T), pressure(at.T)) / at.value, 1.0, 0.02);
+  }
   EXPECT_NEAR(measured("force on the plate", run.fix_vector("plate", 2)[1] / F), 1.0, 0.002);
 }
 

@@ -124,7 +124,7 @@ const char *const HEAD_ON = "variable v atom 0.5*(x<6)-0.3*(x>6)\nvelocity all s
 // coarse and on the fine one (which lose energy where they meet, by their spacing)
 SERIAL_TEST(Collision, IsThatOnOneLattice)
 {
-  for (const std::string options : {"", "scheme musl"}) {
+  for (const std::string &options : first_of<std::string>(1, {"", "scheme musl"})) {
     std::map<std::string, Motion> found;
     auto kinds = KINDS;
     kinds.insert(kinds.begin(), {"coarse", "fine"});

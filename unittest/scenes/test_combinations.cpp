@@ -629,7 +629,7 @@ struct Table {
 /** All pairs in the manual, or, where what takes long is left out, each seventh. */
 TEST_F(Combinations, UpToDate)
 {
-  const bool some = getenv("MPM_QUICK") && !getenv("MPM_WRITE");
+  const bool some = is_quick() && !getenv("MPM_WRITE");
   const std::string known = text_of_file(MPM_SOURCE_DIR "/doc/src/combinations/matrix.inc");
   const Outcome none = outcome({});
   std::vector<Outcome> alone;

@@ -375,7 +375,7 @@ TEST(TimeStepBeyond, EndsWithAnError)
 // flip 1.0 with musl gains energy without bound, 10 % in 10^5 steps.)
 TEST(ManySteps, EnergyAndMomentum)
 {
-  for (const char *options : {"transfer flip 0.99 scheme musl", "transfer apic"}) {
+  for (const char *options : first_of(1, {"transfer apic", "transfer flip 0.99 scheme musl"})) {
     SCOPED_TRACE(options);
     Scene run(plane("lj", "p p", "0 8 0 8", 1, 0.4) +
               body("block 2 6 3 4 -0.5 0.5", "density 1.0 neohookean 0.742857142857 0.3",
@@ -472,6 +472,7 @@ static std::string two_stiffnesses(double soft, double stiff)
 
 TEST(StiffnessRatio, PulseReturns)
 {
+  LONG_CASE();
   const double soft = 8.0, stiff = 2.0, A = 1.0e-5, width = 0.8, Z2 = 1000.0;
   Scene run(two_stiffnesses(soft, stiff) + "run 0\n");
   run.set_reference();

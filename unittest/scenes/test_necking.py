@@ -39,7 +39,8 @@ def smoothed(grip, middle):
 
 
 def test_strength_and_necking():
-    strain, grip, middle = pull()
+    changes = [("> 0.22", "> 0.14")] if mt.QUICK else []    # the neck takes long
+    strain, grip, middle = pull(*changes)
     smooth = smoothed(grip, middle)
     k = smooth.argmax()
     strength, at = smooth[k], strain[4 + k]
@@ -62,6 +63,8 @@ def test_strength_and_necking():
         print("strain %.2f: %.1f MPa, uniaxial %.1f MPa" % (x, found, expected))
         assert abs(found / expected - 1) < 0.015
 
+    if mt.QUICK:
+        return
     # after it the force falls, between square and round bars of finite elements (501 and 560 MPa)
     late = np.interp(0.16, strain[4:-4], smooth)
     print("strain 0.16: %.1f MPa" % late)
@@ -71,6 +74,7 @@ def test_strength_and_necking():
 def test_failure():
     """With Johnson-Cook failure the bar breaks: the force has dropped by half at a strain of 0.192 in
     finite elements of a square bar (0.248 for a round one)."""
+    mt.long_case()
     strain, grip, middle = pull(
         ("hardening power 382e6 0.458",
          "hardening power 382e6 0.458 damage johnson/cook 0.636 1.936 -2.969 soften from 0.3"),

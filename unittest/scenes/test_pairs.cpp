@@ -361,6 +361,8 @@ TEST_P(Pairs, Agree)
   }
   double deleted = 0.0, deleted_with_map = 0.0;
   auto sets = covering(all());
+  // the first ones have most of the pairs
+  if (GetParam() == 3 && is_quick()) sets.resize(sets.size() / 2);
   sets.push_back(named("delete damage map"));    // whatever else is with these, points must go
   for (const auto &chosen : sets) {
     SCOPED_TRACE(names(chosen));

@@ -878,7 +878,7 @@ static const LongSpinCase long_spin_cases[] = {{"transfer apic", "neohookean"},
 
 PARAMETER_TEST(LongSpin, SizeAndJ, LongSpinCase, ValuesIn(long_spin_cases))
 {
-  LONG_AFTER(1);
+  LONG_CASE();
   const double h = 0.025;
   Scene run;
   setup_spin(run, GetParam().options, GetParam().law, h);

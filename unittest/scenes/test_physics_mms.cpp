@@ -453,7 +453,7 @@ static const VortexCase vortex_cases[] = {
 
 PARAMETER_TEST(Vortex, Converges, VortexCase, ValuesIn(vortex_cases))
 {
-  LONG_AFTER(2);
+  LONG_AFTER(1);
   const auto &c = GetParam();
   double error[3];
   for (int k = c.other.empty() ? 1 : 0; k < 3; k++) {

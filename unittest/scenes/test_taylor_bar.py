@@ -34,6 +34,7 @@ def measure(h, demo=False):
 
 
 def test_demonstration_meets_the_experiment():
+    mt.long_case()
     found, table = measure(0.0005, demo=True)
     print(table)
     mean = float(re.search(r"mean of the three errors +([0-9.]+)%", table).group(1))
@@ -46,6 +47,8 @@ def test_demonstration_meets_the_experiment():
 
 
 def test_refinement_comes_closer_to_finite_elements():
+    mt.long_case()
+
     def distance(h):
         found, _ = measure(h)
         return sum(abs(found[k] / v - 1) for k, (v, _) in FINITE_ELEMENTS.items()) / 3

@@ -206,7 +206,7 @@ TEST(SplineMultigrid, ProductsOfHardCases)
   EXPECT_LE(patches(2, 16, 10.0), 25.0);
   EXPECT_LE(patches(2, 16, 100.0), 20.0);
   EXPECT_LE(patches(2, 48, 1e4), std::min(22.0, 1.3 * patches(2, 16, 1e4)));
-  EXPECT_LE(patches(3, 11, 1e4), 25.0);
+  if (!MPM_TEST::is_quick()) EXPECT_LE(patches(3, 11, 1e4), 25.0);    // takes long
   // cells that the surface cuts anywhere: a disk that is held in its middle
   auto disk = block(2, 22);
   disk.inside = [](const double *x) {
