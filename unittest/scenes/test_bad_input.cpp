@@ -142,6 +142,8 @@ static const Change boxes[] = {
      "change_box all boundary p p p\ngroup none empty\nfix b none nph iso 1.0 1.0 1.0",
      "box of constant size and shape: remove the fix"},
     {"Respa", "", "run_style respa 2 2", "requires run_style verlet"},
+    {"RunWithinARun", RUN, "run 4 every 2 \"run 0\"\n",
+     "Fix mpm has not been set up for this step: .*use a loop of runs"},
     {"Minimize", RUN, "minimize 0 0 10 10\n", "[Ff]ix mpm.*minimiz"},
 };
 INSTANTIATE_TEST_SUITE_P(Boxes, BadInput, ValuesIn(boxes), case_name);

@@ -15,6 +15,7 @@ FixStyle(mpm/elements,FixMPMElements);
 #ifndef LMP_FIX_MPM_ELEMENTS_H
 #define LMP_FIX_MPM_ELEMENTS_H
 
+#include "base/mpm_integrator.h"
 #include "base/mpm_state.h"
 #include "elements/element_forces.h"
 #include "elements/element_nodes.h"
@@ -56,6 +57,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   }
   void post_force(int) override
   {
+    check_set_up(lmp, "Fix mpm/elements");
     uncoupled.look();
     compute(false);
   }

@@ -8,6 +8,7 @@
 
 #include "flow/fix_mpm_incompressible.h"
 
+#include "base/mpm_integrator.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "field/mpm_setup_checks.h"
@@ -72,12 +73,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
 
 void FixMPMIncompressible::init()
 {
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/incompressible requires run_style verlet");
-  if (update->whichflag == 2)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/incompressible cannot be used with minimize: minimize before the fix is "
-               "defined");
+  check_integrator(lmp, "Fix mpm/incompressible");
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/incompressible requires a box of constant size and shape: remove the fix "
@@ -124,6 +120,7 @@ void FixMPMIncompressible::pre_force(int)
  *  period. */
 void FixMPMIncompressible::initial_integrate(int)
 {
+  check_set_up(lmp, "Fix mpm/incompressible");
   flow->checks.look();
   flow->step();
   travel += flow->largest_velocity() * update->dt;

@@ -9,6 +9,7 @@
 #include "meshgrid/fix_mpm_mesh.h"
 
 #include "base/mpm_input.h"
+#include "base/mpm_integrator.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
@@ -85,11 +86,7 @@ FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) :
 
 void FixMPMMesh::init()
 {
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh requires run_style verlet");
-  if (update->whichflag == 2)
-    error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/mesh cannot be used with minimize: minimize before the fix is defined");
+  check_integrator(lmp, "Fix mpm/mesh");
   if (domain->triclinic)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh requires an orthogonal box");
   for (int d = 0; d < mesh->dim; d++)
@@ -410,6 +407,7 @@ void FixMPMMesh::make_plan()
 
 void FixMPMMesh::initial_integrate(int)
 {
+  check_set_up(lmp, "Fix mpm/mesh");
   uncoupled.look();
   stages.run();
   steps++;

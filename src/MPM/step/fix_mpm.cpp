@@ -9,6 +9,7 @@
 #include "step/fix_mpm.h"
 
 #include "atom.h"
+#include "base/mpm_integrator.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "base/mpm_version.h"
@@ -104,12 +105,7 @@ int FixMPM::setmask()
 
 void FixMPM::init()
 {
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix mpm requires run_style verlet");
-  if (update->whichflag == 2)
-    error->all(FLERR,
-               "Fix mpm cannot be used with minimize, which would move material points like atoms: "
-               "minimize before the fix is defined");
+  check_integrator(lmp, "Fix mpm");
   field->points = MPMPoints::get(atom);
   field->check_box();
   if (domain->box_change_size || domain->box_change_shape)
@@ -217,6 +213,7 @@ void FixMPM::setup(int)
 void FixMPM::initial_integrate(int /*vflag*/)
 {
   if (!plan) return;
+  check_set_up(lmp, "Fix mpm");
   checks->look();
   plan->step();
 }
