@@ -91,7 +91,7 @@ TEST(Fourier, IterationsInOtherShapes)
   const std::string shapes[] = {"(y<0.4+0.2*x)", "((x-0.5)^2+(y-0.5)^2<0.09)", splashes()};
   const int reference[3][3] = {{14, 18, 22}, {15, 19, 25}, {28, 39, 53}};
   for (int shape = 0; shape < 3; shape++) {
-    int many[3] = {0, 0, 0};
+    int many[3];
     for (const int k : first_of(2, {0, 1, 2})) {
       const int n = 32 << k;
       many[k] = iterations(water(2, "f f", n, "0 1 0 1", shapes[shape]) + flow(n, SOLVER));
@@ -100,7 +100,7 @@ TEST(Fourier, IterationsInOtherShapes)
     // in a halving of the spacing by 1.45; disks of one cell in the radius are too coarse to tell
     if (shape < 2) {
       EXPECT_LE(many[1], 1.45 * many[0]) << shapes[shape];
-      EXPECT_LE(many[2], 1.45 * 1.45 * many[0]) << shapes[shape];
+      if (!is_quick()) EXPECT_LE(many[2], 1.45 * 1.45 * many[0]) << shapes[shape];
     }
   }
 }

@@ -126,7 +126,7 @@ const double EFFUSIVITY = std::sqrt(K * STEEL);
 SERIAL_TEST(Brake, HeatsBothFaces)
 {
   EXPECT_NEAR(rise(0.5 * END, 2.0 * EFFUSIVITY), 18.06853, 1e-5);
-  double error[3] = {0.0, 0.0, 0.0};
+  double error[3];
   for (const int k : first_of(1, {0, 1, 2})) {
     Braked b = {2.0 * (1 << k)};
     b.ramp = 0.02;
@@ -153,7 +153,7 @@ SERIAL_TEST(Brake, HeatsBothFaces)
     EXPECT_NEAR(run.evaluate("f_touch") / e[7], 1.0, 1e-12);
     EXPECT_NEAR(e[14] / e[17], 1.0, 1e-11);    // what points have got
   }
-  EXPECT_LT(std::fabs(error[1]), 0.3 * std::fabs(error[0]));
+  if (!is_quick()) EXPECT_LT(std::fabs(error[1]), 0.3 * std::fabs(error[0]));
 }
 
 // what the kinetic energy loses is heat, when the pressure comes slowly, so that nothing vibrates

@@ -61,6 +61,27 @@ SERIAL_TEST(Tube, Widens)
   EXPECT_NEAR(found[0], found[1], 1e-7) << "a state of equilibrium does not know its past";
 }
 
+// hoop stress under a small pressure, against p/3 (1 + 4/r^2) of Lame: lattices of points cut bore
+// and side, so that forces by mls and by gradients have the same errors in the total frame
+SERIAL_TEST(Tube, HasTheStressOfLame)
+{
+  double error[2][2];
+  for (const int fine : {0, 1})
+    for (const int gradient : {0, 1}) {
+      const std::string grid =
+          strprintf("%g frame total stress ", fine ? 0.05 : 0.1) + (gradient ? "gradient" : "mls");
+      Scene run(tube("pressure v_p", 1e-4, 1, "static", grid) +
+                "compute s all mpm/atom stress/xx stress/yy stress/xy\nvariable q atom x*x+y*y\n"
+                "variable hoop atom (c_s[1]*y*y+c_s[2]*x*x-2*c_s[3]*x*y)/v_q\n"
+                "variable e atom (3*v_hoop/v_p-1-4/v_q)^2\ncompute m all reduce ave v_e\n"
+                "thermo_style custom step c_m\nrun 1\nvariable p equal " +
+                strprintf("%.17g\nrun 0\n", 1e2 / 2.6));
+      error[fine][gradient] = measured(grid, std::sqrt(run.evaluate("c_m")) / 5.0);
+      EXPECT_LT(error[fine][gradient], fine ? 0.05 : 0.07);
+    }
+  for (const auto &e : error) EXPECT_NEAR(e[1] / e[0], 1.0, 0.1);
+}
+
 // a dead load on the bore keeps its direction and total: the same benchmark
 SERIAL_TEST(Tube, WidensUnderDeadLoad)
 {

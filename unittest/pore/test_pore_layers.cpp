@@ -93,7 +93,7 @@ SERIAL_TEST(Layers, InSeriesWithOtherLaws)
   };
   for (const auto &c : cases)
     for (const double offset : first_of(1, {0.3, 0.0, 0.5})) {
-      double error[2] = {0.0, 0.0};
+      double error[2];
       for (const int n : first_of(1, {10, 20})) {
         Scene run(plate(
             n,
@@ -104,7 +104,7 @@ SERIAL_TEST(Layers, InSeriesWithOtherLaws)
             std::fabs(measured(strprintf("%s, offset %g, %d cells", c.name, offset, n), q) - 1.0);
       }
       EXPECT_LT(error[0], 0.005);
-      EXPECT_LT(error[1], 0.0025);
+      if (!is_quick()) EXPECT_LT(error[1], 0.0025);
     }
 }
 
