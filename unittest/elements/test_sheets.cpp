@@ -464,4 +464,6 @@ SERIAL_TEST(Sheets, BadInput)
   EXPECT_THAT(failure(good, "fix n all mpm 0.05\n"), HasSubstr("move them with fix nve"));
   EXPECT_THAT(failure(good, "unfix e\nfix n all nve\n"), HasSubstr("needs a fix mpm/elements"));
   EXPECT_THAT(failure("", "fix n all nve\n", "1.0"), HasSubstr("above the limit"));
+  EXPECT_THAT(failure("", "fix n all nve\nrun 4 every 2 \"run 0\"\n"),
+              HasSubstr("mpm/elements has not been set up"));
 }

@@ -790,6 +790,7 @@ SERIAL_TEST(Incompressible, BadInput)
             "0.1 1000 solid half sharp yes",
         "sharp is for flows between walls of the box"},
        {fix + "0.1 1000\nfix n all nve", "also integrated by"},
+       {fix + "0.1 1000\nrun 4 every 2 \"run 0\"", "mpm/incompressible has not been set up"},
        {fix + "0.1 1000\nfix grid all mpm 0.1\nfix m all mpm/material density 1000 linear 1e5 0.3",
         "also integrated by"},
        {fix + "0.1 1000\nfix v all mpm/incompressible 0.1 1000", "also integrated by"},

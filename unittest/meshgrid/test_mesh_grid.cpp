@@ -399,6 +399,7 @@ SERIAL_TEST(MeshGrid, BadInput)
        {fix + "\ncompute e all mpm/energy\nrun 1", "has its energies in its own vector"},
        {fix + "\ndisplace_atoms all move 3 0 0\nrun 1", "is outside of the mesh"},
        {fix + "\ntimestep 10\nrun 1", "is above the limit"},
+       {fix + "\nrun 4 every 2 \"run 0\"", "mpm/mesh has not been set up"},
        {fix + "\ngroup none empty\nunfix g\nfix g none mpm/mesh " + file.name + "\nrun 1",
         "no material points"},
        {fix + "\nmin_style cg\nminimize 0 0 1 1", "cannot be used with minimize"}});

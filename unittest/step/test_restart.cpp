@@ -276,7 +276,8 @@ SERIAL_TEST(ResetTimestep, ChangesNothing)
   const std::string scene = plane("si", "f f", "0 1 0 1", 2, 0.02) +
       "fix grid all mpm 0.05\nregion b block 0.2 0.8 0.2 0.6 INF INF\n"
       "create_points 1 region b ppc 2\nregion e block 0.2 0.3 0.8 0.9 INF INF\n"
-      "fix m all mpm/material density 1000 neohookean 1e5 0.3 thermal conducting 500 293 50\n"
+      "fix m all mpm/material density 1000 neohookean 1e5 0.3 thermal conducting 500 293 50 "
+      "expansion 1e-2\n"
       "fix h all mpm/heat every 7 surface convection 500 400\nfix w all mpm/boundary ylo separate\n"
       "fix g all gravity 9.81 vector 0 -1 0\ntimestep 1e-3\n"
       "fix e all mpm/emit 2 region e velocity 0 -2 0\nrun 53\n";
