@@ -160,7 +160,8 @@ SERIAL_TEST(Surface, NextToASide)
 
 /** Water that has come into soil below a free surface with this slope, over the flux times area and
  *  time; above the height bottom if this is not 0, with a surface there, too. */
-double came_in(double degrees, double h, double origin, double bottom = 0.0)
+double came_in(double degrees, double h, double origin, double bottom = 0.0,
+               const std::string &more = "")
 {
   const double d = 0.5 * h, slope = degrees * PI / 180.0, surfaces = bottom > 0.0 ? 2.0 : 1.0;
   std::string table = "x,y,volume\n";
@@ -172,8 +173,8 @@ double came_in(double degrees, double h, double origin, double bottom = 0.0)
             strprintf("\nfix grid all mpm %g origin %g %g\n", h, origin, origin) +
             "fix m all mpm/material density 2000 linear 1e8 0.0\n"
             "fix sides all mpm/boundary xlo xhi ylo slip\n"
-            "fix water all mpm/pore 1e7 1000 1 soil m 0.4 constant 1e-7 free flux 1e-6\n"
-            "fix dt all mpm/dt 0.3\nrun 20\n");
+            "fix water all mpm/pore 1e7 1000 1 soil m 0.4 constant 1e-7 free flux 1e-6 " +
+            more + "\nfix dt all mpm/dt 0.3\nrun 20\n");
   return run.fix("water")->compute_scalar() / (surfaces * 1e-6 * 2.0 / cos(slope) * run.time());
 }
 
@@ -181,6 +182,11 @@ double came_in(double degrees, double h, double origin, double bottom = 0.0)
 SERIAL_TEST(Surface, AreaOfAFlux)
 {
   for (const double origin : {0.0, 0.03, 0.07}) {
+    for (const double bottom : {0.0, 0.8})
+      EXPECT_NEAR(measured("with inertia", came_in(0.0, 0.1, origin, bottom, "formulation u-v-p")),
+                  1.0, 2e-9);
+    EXPECT_NEAR(measured("10 degrees", came_in(10.0, 0.1, origin, 0.0, "formulation u-v-p")), 1.0,
+                0.03);
     EXPECT_NEAR(came_in(0.0, 0.1, origin), 1.0, 2e-9);
     EXPECT_NEAR(came_in(0.0, 0.1, origin, 0.8), 1.0, 1e-9);
     for (const double degrees : {10.0, 30.0, 45.0}) {

@@ -563,7 +563,9 @@ void MPMPoreSurface::share_area(const MPMNodeScalar &scalar)
     if (!(place.area > 0.0)) continue;
     double area = 0.0;
     for (int k = place.top.first; k < place.top.last; k++) area += weight[k];
-    if (conditions[place.part].kind != MPMPoreCondition::FLUX || area == 0.0) place.area = area;
+    // a flux keeps its area, unless its nodes lack it: the surface is then that of another material
+    const bool is_flux = conditions[place.part].kind == MPMPoreCondition::FLUX;
+    place.area = is_flux ? std::min(place.area, area / MOSTLY) : area;
     for (int k = place.top.first; k < place.top.last && area > 0.0; k++) {
       weight[k] /= area;
       int index[3] = {0, 0, 0};
