@@ -15,6 +15,7 @@
 #include "base/mpm_points.h"
 #include "base/mpm_state.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "field/mpm_every.h"
 #include "field/mpm_frame.h"
@@ -65,10 +66,21 @@ void MPMBoxes::size_of(int i, double *size) const
     if (field.options.shape == CPGIMP) {
       double square = 0.0;
       for (int e = 0; e < dim; e++) square += F[e] * F[e] * aspect[e] * aspect[e];
-      edge = sqrt(square);
+      edge = std::min(sqrt(square), inside(i, d) / half);
     }
     size[d] = std::max(MIN_SIZE, std::min(MAX_SIZE, half * edge));
   }
+}
+
+/** Distance of a point to the nearest fixed face of the box along an axis, a little shorter, in
+ *  node spacings. Deformed boxes end there: points that began next to a face, or to the axis of
+ *  symmetry, would reach over it or not by round-off, and there nodes have forces, but no mass. */
+double MPMBoxes::inside(int i, int d) const
+{
+  constexpr double A_LITTLE = 1.0e-6;
+  if (domain->periodicity[d]) return MAX_SIZE;
+  const double x = atom->x[i][d];
+  return (1.0 - A_LITTLE) * std::min(x - domain->boxlo[d], domain->boxhi[d] - x) / field.lattice.h;
 }
 
 /** A ring has its initial size at x/F_zz, which is its initial radius until it moves only: with

@@ -37,6 +37,8 @@ class MPMBoxes : protected Pointers {
 
  private:
   MPMField &field;
+
+  double inside(int i, int d) const;
 };
 
 /** Domains of the points (shapes cpdi and cpdi2), see transfer/cpdi.h. */
