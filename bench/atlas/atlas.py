@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # This file is part of the MPM package for LAMMPS, distributed under the GNU
 # General Public License, version 2; see the file LICENSE.
-"""Atlas of the variants of fix mpm: what each costs, and how accurate it is, on six scenes.
+"""Atlas of the variants of fix mpm: what each costs, and how accurate it is, on seven scenes.
 
 usage: atlas.py LMP [--out FOLDER] [--scene NAME ...] [--limit N] [--again]
 

@@ -328,8 +328,8 @@ def all_round(data, scenes):
 
 
 def rules(data):
-    solids = [s for s in sc.SCENES if sc.SCENES[s]["total"]]
-    flows = [s for s in sc.SCENES if not sc.SCENES[s]["total"]]
+    solids = [s for s in sc.SCENES if s not in sc.FLOWS]
+    flows = list(sc.FLOWS)
     out = []
     lines = []
     for scene in sc.SCENES:

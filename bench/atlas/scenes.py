@@ -23,6 +23,7 @@ MIDDLE = ("2", "0.4")    # ppc, dtfrac of the full factorial
 #   "reference levels" it is, uncertain by half of the range of their values at both levels
 # cost_level: the spacing at which costs are measured, so fine that a run is long enough for that
 # extra: ns per point-step of what is no part of the method (a body force), when runs are planned
+# total: whether the total frame can be used
 # stretch: whether points move so far apart that more of them are tried in the updated frame
 # cheap: whether all schemes are part of the factorial; goal: the error that settings are compared at
 # scale: what errors are relative to; pairs of q: error = |q - reference| / scale
@@ -43,6 +44,14 @@ SCENES = {
         source="extrapolated from finite elements, -3.2958 m with 40 by 10 and -3.3027 m with 80 by 20",
         reference=-3.3050, scale=3.3050, total=True, cheap=True, cost_level=2, stretch=True, dimension=2, goal=0.01,
         levels=("0.25", "0.125", "0.0625", "0.03125")),
+    "disks": dict(
+        title="Two elastic disks",
+        quantity="velocity at which the centers of mass part, over that at which they met",
+        source="two settings with fine lattices",
+        reference=(("quadratic", "apic", "usl", "updated"), ("cubic", "flip 1.0", "musl", "updated")),
+        reference_levels=("0.0125", "0.00625"),
+        scale=1.0, total=False, cheap=True, cost_level=2, dimension=2, goal=0.02,
+        levels=("0.05", "0.025", "0.0125", "0.00625")),
     "taylor": dict(
         title="Taylor bar",
         quantity="final diameter of the foot over the final length",
@@ -77,6 +86,7 @@ VARIANTS = {
     "dam": [dict(floor=floor, aspect=aspect) for floor in ("slip", "stick") for aspect in ("1", "2", "4")] +
            [dict(jitter="0.3", seed=seed) for seed in ("1", "2", "3")],
 }
+FLOWS = tuple(VARIANTS)    # the other scenes are of solids
 MOST_GAIN = 0.02    # of the energy in play: a setting that creates more in any run is not recommended
 
 

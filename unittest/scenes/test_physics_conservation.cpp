@@ -487,6 +487,24 @@ TEST(TwoDisks, Refined)
   }
 }
 
+// The velocity at which the disks part, over that at which they met, is 0.895 in fine lattices of
+// quadratic and cubic functions (bench/atlas): with apic, it depends on the number of steps
+TEST(TwoDisks, PartWithTheVelocityOfFineLattices)
+{
+  const auto velocity = [](const char *options, const char *h, double of_limit) {
+    Scene run(replaced(replaced(replaced(two_disks, "MPM_OPTIONS", options), "MPM_LAW", "linear"),
+                       "mpm 0.05", std::string("mpm ") + h) +
+              strprintf("fix step all mpm/dt %g until 3.5\nrun 100000\n", of_limit));
+    const auto one = run.sums(1);
+    return measured(strprintf("%s, h %s, %g", options, h, of_limit), -one.p[0] / one.mass / 0.1);
+  };
+  EXPECT_NEAR(velocity("", "0.05", 0.4), 0.895, 0.05);
+  EXPECT_NEAR(velocity("", "0.025", 0.4), 0.895, 0.01);
+  EXPECT_LT(velocity("", "0.05", 0.1), 0.75);
+  for (const double of_limit : {0.4, 0.1})
+    EXPECT_NEAR(velocity("transfer aflip 1.0", "0.05", of_limit), 0.895, 0.025);
+}
+
 // C3: two rings collide at 60 m/s: momentum, symmetry, energy; no point is lost, they bounce off
 TEST(Rings, Collision)
 {

@@ -389,8 +389,9 @@ void MPMEnergyWatch::look_for_loss(double mass)
     error->warning(
         FLERR,
         "Transfers have taken {:.3g} % of the energy in play ({:.4g}) by step {} of this "
-        "run: motion is damped. Use a smaller spacing, transfer aflip 0.99, or shape "
-        "linear transfer flip 1.0 scheme musl; fix mpm ... gain ignore accepts it",
+        "run: motion is damped. Use a smaller spacing, transfer aflip 0.99, shape linear "
+        "transfer flip 1.0 scheme musl, or fewer steps (fix mpm/dt 0.4); fix mpm ... gain ignore "
+        "accepts it",
         100.0 * took / run.in_play, run.in_play, update->ntimestep);
 }
 
