@@ -28,6 +28,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 using namespace LAMMPS_NS;
@@ -35,7 +36,12 @@ using namespace MPM_NS;
 
 // half sizes of boxes, in node spacings: more would reach more nodes than the stencil has
 static constexpr double MAX_SIZE = 0.5;
-
+// boxes are smaller by this share of their distance from the origin: in regular arrays, round-off
+// would decide otherwise whether they reach the next nodes, which would have forces of the order of
+// its root, but no mass
+static constexpr double OF_PLACES = 32.0 * std::numeric_limits<double>::epsilon();
+// boxes end before fixed faces, by this share of the distance of their center
+static constexpr double OF_FACES = 1.0e-9;
 // of the places of corners, in node spacings
 static constexpr double ROUND_OFF = 1.0e-9;
 
@@ -60,7 +66,7 @@ void MPMBoxes::size_of(int i, double *size) const
   constexpr double MIN_SIZE = 1.0e-4;
   const int dim = field.lattice.dim;
   const double *const aspect = field.options.aspect;
-  const double half = half_size(field, i), *F = field.points->F[i];
+  const double half = half_size(field, i), *F = field.points->F[i], *x = atom->x[i];
   for (int d = 0; d < dim; d++, F += 3) {
     double edge = aspect[d];
     if (field.options.shape == CPGIMP) {
@@ -68,19 +74,19 @@ void MPMBoxes::size_of(int i, double *size) const
       for (int e = 0; e < dim; e++) square += F[e] * F[e] * aspect[e] * aspect[e];
       edge = std::min(sqrt(square), inside(i, d) / half);
     }
-    size[d] = std::max(MIN_SIZE, std::min(MAX_SIZE, half * edge));
+    const double place = fabs(x[d] - field.lattice.origin[d]) / field.lattice.h;
+    size[d] = std::max(MIN_SIZE, std::min(MAX_SIZE, half * edge) - OF_PLACES * (1.0 + place));
   }
 }
 
 /** Distance of a point to the nearest fixed face of the box along an axis, a little shorter, in
- *  node spacings. Deformed boxes end there: points that began next to a face, or to the axis of
- *  symmetry, would reach over it or not by round-off, and there nodes have forces, but no mass. */
+ *  node spacings. Deformed boxes end there: those next to an axis of symmetry or a wall have their
+ *  edge there as long as their strain is that of the point. */
 double MPMBoxes::inside(int i, int d) const
 {
-  constexpr double A_LITTLE = 1.0e-6;
   if (domain->periodicity[d]) return MAX_SIZE;
   const double x = atom->x[i][d];
-  return (1.0 - A_LITTLE) * std::min(x - domain->boxlo[d], domain->boxhi[d] - x) / field.lattice.h;
+  return (1.0 - OF_FACES) * std::min(x - domain->boxlo[d], domain->boxhi[d] - x) / field.lattice.h;
 }
 
 /** A ring has its initial size at x/F_zz, which is its initial radius until it moves only: with
