@@ -86,7 +86,7 @@ SERIAL_TEST(Coupled, RemediesHold)
     Scene run(text + "run 170\n");
     return run.evaluate("bound(high,ymin)-bound(low,ymin)");
   };
-  EXPECT_LT(lowest(scene), 0.1);
+  EXPECT_LT(lowest(scene), 0.01);
   EXPECT_GT(lowest(scene + "fix c all mpm/contact A B law coulomb 0.1\n"), 0.15);
   EXPECT_GT(lowest(scene + "pair_style mpm/penalty\npair_coeff * * 1e6\n"), 0.15);
 }

@@ -102,7 +102,7 @@ TEST_P(SinglePoint, TenPeriods)
     EXPECT_LT(error_v / 0.1, 1.3 * 3.1e-3);
     EXPECT_GT(energy_min, 1.0 - 1.3 * 0.00313);
     EXPECT_LT(energy_max, 1.0 + 1.3 * 0.00315);
-    EXPECT_NEAR(period - 1.0, -pow(2.0 * PI * 1.0e-3, 2) / 24.0, 0.3e-6);
+    EXPECT_NEAR(period - 1.0, -pow(2.0 * PI * 1.0e-3, 2) / 24.0, 1.0e-11);
   }
 
   // first order in dt
@@ -322,8 +322,8 @@ TEST(VibratingBarModeTen, PeriodAndEnergy)
     EXPECT_NEAR(period - 1.0, deviation, 0.1 * deviation);
     EXPECT_NEAR(energy, apic ? 1.053 : .958, .002 + 0.5 * 10.0 * beta * dt);
     const auto other = independent(1, apic ? "apic" : "flip", !apic, 64, 10, 20.0);
-    EXPECT_NEAR(period, measured("A2 independent code: T/T10", other.period), 1.0e-4);
-    EXPECT_NEAR(energy, measured("A2 independent code: E/E0", other.energy), 2.0e-3);
+    EXPECT_NEAR(period, measured("A2 independent code: T/T10", other.period), 1.0e-6);
+    EXPECT_NEAR(energy, measured("A2 independent code: E/E0", other.energy), 1.0e-5);
   }
 }
 
@@ -335,7 +335,7 @@ TEST(VibratingBarAtWall, AgainstSymmetry)
       const std::string options = strprintf("shape %s transfer %s", shape, transfer);
       const auto wall = vibrate(options, 16, 2, true), symmetry = vibrate(options, 16, 2, false);
       EXPECT_NEAR(wall.energy, symmetry.energy, 2.0e-5);
-      EXPECT_NEAR(wall.period, symmetry.period, 1.0e-5);
+      EXPECT_NEAR(wall.period, symmetry.period, 1.0e-6);
     }
 }
 
@@ -568,7 +568,7 @@ PARAMETER_TEST(GalileanBar, ErrorDoesNotDependOnVelocity, const char *,
   EXPECT_LT(at_rest.error, 0.06);
   EXPECT_LT(slow.error, 1.15 * at_rest.error);
   EXPECT_LT(fast.error, 1.15 * at_rest.error);
-  for (const auto &g : {at_rest, slow, fast}) EXPECT_NEAR(g.energy, 1.0, 0.01);
+  for (const auto &g : {at_rest, slow, fast}) EXPECT_NEAR(g.energy, 1.0, 0.006);
 }
 
 TEST(GalileanBarLinear, ShowsTheDefect)

@@ -322,7 +322,7 @@ TEST(SimpleShear, OfAHardeningMetal)
       expected += (yield / sqrt(3.0) + H * gamma / 3.0) / (1.0 + H / (3.0 * G));
     });
     run.commands("run 1000000\n");
-    EXPECT_NEAR(measured("simple shear, stress over exact", std::abs(tau) / expected), 1.0, 5e-3);
+    EXPECT_NEAR(measured("simple shear, stress over exact", std::abs(tau) / expected), 1.0, 1e-3);
   }
 }
 

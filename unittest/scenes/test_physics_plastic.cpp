@@ -300,11 +300,11 @@ TEST(InfiniteSlope, SlidesWhenTooSteep)
       }
       ratio /= n;
       if (std::tan(angle) > std::sin(phi)) {
-        EXPECT_NEAR(measured("G3 friction of a sliding slope", ratio), std::sin(phi), 2e-3);
+        EXPECT_NEAR(measured("G3 friction of a sliding slope", ratio), std::sin(phi), 5e-4);
         EXPECT_GT(measured("G3 velocity of a sliding slope", speed), 0.4);
       } else {
         EXPECT_NEAR(measured("G3 friction of a slope at rest", ratio), std::tan(angle), 5e-3);
-        EXPECT_LT(measured("G3 velocity of a slope at rest", speed), 2e-3);
+        EXPECT_LT(measured("G3 velocity of a slope at rest", speed), 5e-4);
       }
     }
 }
@@ -341,7 +341,7 @@ TEST(InfiniteSlope, Acceleration)
       const double a = slide(0.05, angle, options, strprintf("%s friction 0.3", wall));
       EXPECT_NEAR(measured(strprintf("G3 %s, %s with friction: acceleration/exact", options, wall),
                            a / exact),
-                  1.0, 0.01);
+                  1.0, 1e-4);
     }
   const double exact = g * (std::sin(angle) - std::sin(phi) * std::cos(angle));
   for (const char *options : {"aflip 1.0", "flip 1.0"})
@@ -407,7 +407,7 @@ TEST(RoughFloor, StopsAGrain)
                             "fix step all mpm/dt 0.4\nrun 3\n",
                             shape, transfer, d - 0.25));
         const double s = d * d * (strcmp(shape, "cubic") == 0 ? 3.0 : 4.0);
-        EXPECT_NEAR(run.v()[0][0] * (1.0 + s) / s, 1.0, 1e-3);
+        EXPECT_NEAR(run.v()[0][0] * (1.0 + s) / s, 1.0, 1e-7);
         run.commands("run 100\n");
         EXPECT_LT(run.v()[0][0] * (1.0 + s) / s, 1.001);
         const double *e = run.compute_vector();

@@ -237,7 +237,7 @@ TEST(Pitfall, ReactionsCountEachNodeOnce)
 
     // the rest of the momentum balance: weight and reaction are all that acts
     const double after = Totals(run.gather()).p[2];
-    EXPECT_NEAR(std::abs((after - before) / dt + weight), std::abs(reaction), 1.0e-9 * weight);
+    EXPECT_NEAR(std::abs((after - before) / dt + weight), std::abs(reaction), 1.0e-12 * weight);
     EXPECT_GT(std::abs(reaction), 0.01 * weight);
     before = after;
   }

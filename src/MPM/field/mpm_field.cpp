@@ -411,7 +411,8 @@ bool MPMField::has_contact() const
 }
 
 /** Fixes can be defined in any order, and come and go between runs: this is found anew for each
- *  run. Where bodies touch, edges give way more with gradients, and pressures of pore water
+ *  run. In the total frame, gradients are better at curved surfaces with stress from temperatures
+ *  only, at rest; waves have smaller errors without. Where bodies touch, edges give way more with gradients, and pressures of pore water
  *  scatter more. */
 void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
 {
@@ -419,8 +420,12 @@ void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
   const auto who = std::find_if(all.begin(), all.end(), [&](const auto *physics) {
     return alone && physics->brings_to_rest();
   });
+  const auto laws = find_fixes<FixMPMMaterial>(lmp);
+  const bool matters = !options.total || std::any_of(laws.begin(), laws.end(), [](const auto *law) {
+    return law->material->is_thermoelastic();
+  });
   const bool before = options.strains_by_gradient();
-  chosen.rests = who != all.end();
+  chosen.rests = who != all.end() && matters;
   if (options.strains_by_gradient() == before || comm->me) return;
   if (before) {
     utils::logmesg(lmp, "Fix mpm {}: stress mls again, the default {}\n", id(),

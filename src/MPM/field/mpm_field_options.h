@@ -19,8 +19,8 @@ struct MPMFieldOptions {
   enum Scheme { USL, USF, MUSL, USAVG };    ///< when stress is updated in a step
   enum Series { LUMPED, XPIC, FMPM };       ///< terms of the inverse of the mass matrix
   /** How forces follow from stress, and velocity gradients from nodal velocities. By default as the
-   *  shape and the transfer do it, or, if bodies come to rest in the updated frame, by
-   *  gradients. */
+   *  shape and the transfer do it, or, if bodies come to rest in the updated frame or with stress
+   *  from temperatures, by gradients. */
   enum Stress { DEFAULT_STRESS, MLS_STRESS, GRADIENT_STRESS };
   enum Locking { NO_CURE, FBAR, PRESSURE, BOTH };    ///< cure for volumetric locking
   enum Policy { ERROR, WARN, DELETE };               ///< what to do with a bad point
@@ -34,7 +34,7 @@ struct MPMFieldOptions {
   Series series = LUMPED;
   int order = 1;    ///< terms of the series
   Stress stress = DEFAULT_STRESS;
-  bool rests = false;    ///< no option: do bodies come to rest? By MPMField::choose_stress()
+  bool rests = false;    ///< no option: is it such a body? By MPMField::choose_stress()
   Scheme scheme = USL;
   bool total = false;             ///< nodes are places of the reference configuration
   double most_distorted = 0.0;    ///< ratio of stretches at which a new reference is made, 0: never
@@ -95,7 +95,7 @@ struct MPMFieldOptions {
   bool strains_by_gradient() const
   {
     return MPM_NS::is_mls(shape, transfer) &&
-        (stress == GRADIENT_STRESS || (stress == DEFAULT_STRESS && rests && !total));
+        (stress == GRADIENT_STRESS || (stress == DEFAULT_STRESS && rests));
   }
 
   bool watches_gain() const { return gain != GAIN_IGNORE; }
