@@ -26,7 +26,7 @@ class Unfit(Exception):
 
 
 class Composition:
-    """One scene of a seed, with random parts or given ones.
+    """One scene of a seed, with random parts or given ones; length: factor of all lengths and times.
 
     fields: fix mpm, each its ID, group, and options by keyword, first the one that others act on
     materials: ID, group, density, law, and what parts have appended to the law
@@ -39,12 +39,13 @@ class Composition:
     loose: ranks and restarts may differ by so much more than by round-off, where a solver stops at a tolerance
     """
 
-    def __init__(self, seed, names=None, units=None, dimension=None):
+    def __init__(self, seed, names=None, units=None, dimension=None, length=1.0):
         pick = self.pick = random_numbers.Random("composition %d" % seed)
         other = random_numbers.Random("other %d" % seed)    # so that all else is the same in other units
         self.seed, self.asked, self.files = seed, names, {}
         self.units = units or other.choice(sorted(UNITS))
         self.h, self.density, self.speed, self.mvv2e, nktv2p = UNITS[self.units]
+        self.h *= length
         self.modulus = self.density * self.speed ** 2 * self.mvv2e * nktv2p
         self.dimension = dimension or pick.choice((2, 2, 3))
         self.size = (14, 12, 1) if self.dimension == 2 else (12, 8, 7)

@@ -8,6 +8,7 @@ ranks       the same on several processes
 restart     the same when the second half begins from a restart file
 whole       the same in one run as in two
 units       the same in another unit style
+length      the same with all lengths and times in another unit, by a factor that changes round-off
 redefined   a fix that is removed and defined again between two runs: only that it ends
 """
 
@@ -19,9 +20,9 @@ import tempfile
 from fuzz_compositions import Composition, UNITS
 from fuzz_scenes import ROUNDING
 
-ORACLES = ("ranks", "restart", "whole", "units", "redefined")
+ORACLES = ("ranks", "restart", "whole", "units", "length", "redefined")
 # largest differences, in units of strains of 1 %; constants of unit styles have eight digits or more
-TOLERANCE = {"ranks": ROUNDING, "restart": 1e-10, "whole": 1e-10, "units": 1e-4}
+TOLERANCE = {"ranks": ROUNDING, "restart": 1e-10, "whole": 1e-10, "units": 1e-4, "length": 1e-9}
 LEDGER = 1e-10    # largest residual, of all energies
 OWN_DOUBTS = re.compile(r"WARNING.*(round-off|rounding|another decomposition)")
 
@@ -109,7 +110,8 @@ def judge(machine, scene, oracle, skip=()):
             return "ran", "", text, done
         else:
             names = sorted(UNITS)
-            other = Composition(scene.seed, scene.asked, names[(names.index(scene.units) + 1) % len(names)])
+            units = names[(names.index(scene.units) + (oracle == "units")) % len(names)]
+            other = Composition(scene.seed, scene.asked, units, length=0.7 if oracle == "length" else 1.0)
             second = without(other.first(), skip)
         files = other.files
         again = machine.run(folder, second, files, ranks=ranks)
@@ -136,7 +138,7 @@ def smaller(machine, scene, oracle, verdict, tries=120):
 
 def oracles_of(seed):
     """Two of them for each seed."""
-    return ("ranks",) + (ORACLES[1 + seed % 4],)
+    return ("ranks",) + (ORACLES[1 + seed % 5],)
 
 
 def try_composition(machine, seed, oracles=None):

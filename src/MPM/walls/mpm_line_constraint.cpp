@@ -59,16 +59,19 @@ bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLin
   // weights of outer nodes without mass, and these times spacings from the first one with mass
   double extrapolated = 0.0, levers = 0.0;
   int first = 0;
+  // nodes see points with a size that reach into the next cell, and no farther
+  const bool sized = field.options.has_size();
   double place = 0.0;    // position of the wall, in nodes from the outermost one
+  for (int j = 0; j < line.n; j++) place += j * line.weight[inward > 0 ? j : line.n - 1 - j];
   bool reached = false;
   for (int j = 0; j < line.n; j++) {
     const int k = inward > 0 ? j : line.n - 1 - j;
     const double *r = line.node[k] < 0 ? nullptr : grid.record(line.node[k]);
-    const bool matters = line.weight[k] >= MIN_WEIGHT[order];
-    place += j * line.weight[k];
+    const bool beyond = sized && place - j > 1.0 - AT_NODE;
+    const bool matters = line.weight[k] >= MIN_WEIGHT[order] && !beyond;
     if (!r || r[3] <= least) {
       if (!reached && matters && !keeps) return false;
-      if (n == 0 && (keeps || (order == 1 && j == 0))) {
+      if (n == 0 && (keeps || beyond || (order == 1 && j == 0))) {
         extrapolated += line.weight[k];
         levers -= j * line.weight[k];
       }

@@ -17,7 +17,8 @@
  *
  *    sum_p s f(x_p) - int_0^inf f dx = s^2/24 f'(0) + O(s^4)
  *
- *  Points with a size (GIMP, CPDI) integrate M exactly, but x is that of their center: - s^2/12 M'.
+ *  Points with a size (GIMP, CPDI) integrate M, which is linear for them, exactly, but x is that of
+ *  their center: - s^2/12 M'.
  *  Points that are about to cross the wall count as deep inside, so that single ones do not
  *  pass. */
 
@@ -56,6 +57,10 @@ MPMContactDistance::MPMContactDistance(const MPMField &field, const double *posi
   const auto M = [&](double x) {
     double sum = 0.0;
     for (int k = 0; k < n; k++) {
+      if (sized) {    // the functions of nodes, of which such points see means
+        sum += weights[k] * std::max(0.0, 1.0 - fabs(x - positions[k]));
+        continue;
+      }
       // N_k depends on the distance from the node: here node 16, and the place is shifted
       int first;
       double w[4];
