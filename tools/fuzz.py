@@ -16,8 +16,8 @@ of the physics of the package (fuzz_compositions.py), and tells of each how it e
   mass, momentum   of a scene that nothing acts on have changed
   ranks            the state on two processes is another than on one, by more than round-off can do
   restart          the state after a restart is not, bit by bit, that of the uninterrupted run
-  check, whole, units    of a composition: mass or the ledger of energy does not close, one run is not the
-                   same as two, another unit style gives another result (fuzz_oracles.py)
+  check, whole, units, length    of a composition: mass or the ledger of energy does not close, one run is
+                   not the same as two, another unit style or length gives another result (fuzz_oracles.py)
   refused          a scene that ought to be right ended in an error; a composition may be refused
 
   --inputs N       inputs with mistakes (default 200)

@@ -743,10 +743,9 @@ SERIAL_TEST(Disk, StressByGradientsIsTheDefaultWhereItMatters)
   EXPECT_EQ(lines("linear 1 0.3"), 0);
 }
 
-// in the total frame, too, stress by gradients is the default, and right at a rim that is inclined to
-// the lattice, where that of moving least squares is 24 % wrong
-SERIAL_PARAMETER_TEST(Disk, Heated, const char *,
-                      Values("", "frame total"))
+// in the total frame, too, stress by gradients is the default, and right at a rim that is inclined
+// to the lattice, where that of moving least squares is 24 % wrong
+SERIAL_PARAMETER_TEST(Disk, Heated, const char *, Values("", "frame total"))
 {
   LONG_CASE();
   const auto error = errors_of_heated_disk(0.1, GetParam());

@@ -292,7 +292,8 @@ TEST(Ranks, Agree)
       plane("lj", "f f", "0 14 0 12", 2, 0.5) +
           "region wet block 2 6 2 6 INF INF\nregion dry block 8 11 3 6 INF INF\n"
           "fix grid all mpm 1 shape cubic\n"
-          "create_points 1 region wet ppc 2\ncreate_points 2 region dry ppc 2\ngroup one type 1\ngroup two type 2\n"
+          "create_points 1 region wet ppc 2\ncreate_points 2 region dry ppc 2\n"
+          "group one type 1\ngroup two type 2\n"
           "fix m one mpm/material density 1.0 linear 10.0 0.3\n"
           "fix n two mpm/material density 1.0 linear 20.0 0.3\nfix water all mpm/pore "
           "20.0 0.25 1.0 soil m 0.4 constant 0.1 free flux 1e-2 " +

@@ -959,13 +959,15 @@ static double height_of_impact(const char *shape, const char *kind, double place
 {
   const double low = is_face ? place : 0.0, wall = is_face ? place : 2.0 + place;
   Scene run(plane("si", "f f", strprintf("0 8 %g 12", low), 1, 0.5) +
-            strprintf("fix grid all mpm 1 shape %s origin 0 0\nregion body block 2 6 %g 9 INF INF\n",
+            strprintf("fix grid all mpm 1 shape %s origin 0 0\n"
+                      "region body block 2 6 %g 9 INF INF\n",
                       shape, wall + 0.3) +
             "create_points 1 region body spacing 0.5\nvelocity all set 0 -2 0\n"
             "fix m all mpm/material density 1 linear 1e4 0.3\n" +
-            (is_face ? std::string("fix w all mpm/boundary ylo ") :
-                       strprintf("region floor block INF INF INF %g INF INF\n"
-                                 "fix w all mpm/boundary region floor ", wall)) +
+            (is_face ? std::string("fix w all mpm/boundary ylo ")
+                     : strprintf("region floor block INF INF INF %g INF INF\n"
+                                 "fix w all mpm/boundary region floor ",
+                                 wall)) +
             kind + "\nfix step all mpm/dt 0.2\nrun 0\n");
   double lowest = 0.0;
   for (int step = 0; step < 1000 && run.fix_vector("w", 3)[1] == 0.0; step++) {

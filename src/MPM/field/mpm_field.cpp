@@ -411,9 +411,9 @@ bool MPMField::has_contact() const
 }
 
 /** Fixes can be defined in any order, and come and go between runs: this is found anew for each
- *  run. In the total frame, gradients are better at curved surfaces with stress from temperatures
- *  only, at rest; waves have smaller errors without. Where bodies touch, edges give way more with gradients, and pressures of pore water
- *  scatter more. */
+ *  run. In the total frame, gradients are better only at curved surfaces with stress from
+ *  temperatures, at rest; waves have smaller errors without. Where bodies touch, edges give way
+ *  more with gradients, and pressures of pore water scatter more. */
 void MPMField::choose_stress(const std::vector<MPMPhysics *> &all)
 {
   const bool alone = !has_contact() && find_fixes<MPMPorePressure>(lmp).empty();

@@ -77,9 +77,10 @@ Options MPMFieldOptions::declare(int dim)
             },
             {{"mls", MLS_STRESS}, {"gradient", GRADIENT_STRESS}})},
         "form of the internal force and of the velocity gradient")
-      .standard("mls if *shape* and *transfer* allow it; gradient in the updated frame, and if stress "
-                "depends on temperatures, with fix mpm/relax, and with fix mpm/implicit static "
-                "and euler, without fix mpm/contact and fix mpm/pore")
+      .standard(
+          "mls if *shape* and *transfer* allow it; gradient in the updated frame, and if stress "
+          "depends on temperatures, with fix mpm/relax, and with fix mpm/implicit static "
+          "and euler, without fix mpm/contact and fix mpm/pore")
       .keep([this] {    // the fixes that it depends on come after the file has been read
         return stress != DEFAULT_STRESS || !strains_by_gradient();
       });
