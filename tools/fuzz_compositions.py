@@ -615,7 +615,7 @@ def walls(c):
                 c.physics.append("fix %s all mpm/boundary %s %s" % (axis + side, axis + side, c.pick.choice(kinds)))
     if c.pick.random() < 0.5:
         c.physics += ["variable shift equal %s*step*0.01" % c.length(0.5),
-                      "region block block INF INF INF %s INF INF%s" % (c.length(2.3), c.pick.choice((
+                      "region block block INF INF INF %s INF INF%s" % (c.length(2.27), c.pick.choice((
                           "", " move NULL v_shift NULL"))),
                       "fix block all mpm/boundary region block " + c.pick.choice(kinds)]
     c.free = False
