@@ -996,6 +996,23 @@ SERIAL_TEST(Arrival, IsAtTheSurface)
                     k.bound);
 }
 
+// functions of the lowest points end in a node of the line through the wall, which waits for it
+SERIAL_TEST(Arrival, RoundOffOfMassesDoesNotReachTheWall)
+{
+  const auto end = [](double origin) {
+    Scene run(plane("si", "f f", "0 8 0 12", 1, 0.5) +
+              "region body block 2 6 2.25 7.25 INF INF\ncreate_points 1 region body spacing 0.5\n"
+              "displace_atoms all move 0 0.25 0 units box\n" +
+              strprintf("fix grid all mpm 1 origin %g %g\n", origin, origin) +
+              "velocity all set 0 -2 0\nfix m all mpm/material density 1 linear 1e4 0.3\n"
+              "region floor block INF INF INF 2.27 INF INF\n"
+              "fix w all mpm/boundary region floor separate\ntimestep 1e-4\nrun 1\n");
+    return run.gather();
+  };
+  for (const double origin : {3e-15, -3e-15})
+    EXPECT_LT(measured("difference", difference(end(0.0), end(origin), 1e4)), 1e-12);
+}
+
 TEST(Arrival, WaterFallsAndCalmsDown)
 {
   if (nranks() > 2) GTEST_SKIP() << "two ranks are enough";

@@ -54,6 +54,7 @@ bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLin
 {
   *this = MPMLineConstraint();
   Grid &grid = field.grid;
+  least = std::max(least, field.least_node_mass);    // not reached by points, but for round-off
   const int order = stencil_order(field.options.shape);
   const bool keeps = wall.keeps_distance();
   // weights of outer nodes without mass, and these times spacings from the first one with mass
