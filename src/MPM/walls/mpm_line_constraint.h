@@ -40,8 +40,8 @@ class MPMLineConstraint {
                         double *weight);
 
   /** Finds the constraint on a line whose nodes are in the order along the axis. inward: 1 if the
-   *  material is behind the last one, else -1. Nodes with no more than the least mass, or one
-   *  by round-off, count as empty. Returns false where no point reaches the wall. */
+   *  material is behind the last one, else -1. Nodes with no more than the least mass count as
+   *  empty. Returns false where no point reaches the wall. */
   bool find(const MPMWall &, MPMField &, const NodeLine &, int inward, double least = 0.0);
   /** Must the velocities of the nodes also be without curvature? */
   bool is_straight() const { return straight; }
