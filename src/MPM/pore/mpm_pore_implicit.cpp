@@ -212,6 +212,10 @@ void MPMPore::each_term(const std::vector<double> &softness, const Term &use)
 void MPMPore::take_solution(std::vector<double> &inflow)
 {
   const std::vector<double> now = nodes.value;
+  // the residual has had the rates of volumes in the place of volumes
+  each_point(field, [&](const auto &, int i) {
+    squeezed[i] = field.points->jacobian(i) * atom->vfrac[i];
+  });
   take_motion(field.step_dt());
   find_rates(inflow);
   field.nodes.complete(nodes.rate.data(), 1, 1);
