@@ -87,12 +87,14 @@ PARAMETER_TEST(Bar, HasThermalStress, const char *, Values("frame total", ""))
 }
 
 // the steady state of a tube in steps of 1e9 s. With quadratic functions the stress of single
-// points alternates in a cell, and the error is one of first order, 3.2 % with 16 cells
-SERIAL_TEST(Tube, HasThermalStress)
+// points alternates in a cell, and the error is one of first order, 3.2 % with 16 cells. Surfaces
+// along the lattice are those where stress mls is the better one
+SERIAL_PARAMETER_TEST(Tube, HasThermalStress, const char *, Values("cubic stress mls", "cubic"))
 {
+  const bool mls = std::string(GetParam()) != "cubic";
   double error[2];
   for (int k = 0; k < 2; k++) {
-    Scene run(tube(8 << k, "static", "time euler", 1e9, "cubic") + "run 3\n");
+    Scene run(tube(8 << k, "static", "time euler", 1e9, GetParam()) + "run 3\n");
     const auto rr = quantity(run, "stress/xx"), tt = quantity(run, "stress/zz");
     double sum = 0.0, all = 0.0;
     for (int i = 0; i < run.n(); i++) {
@@ -103,8 +105,8 @@ SERIAL_TEST(Tube, HasThermalStress)
     }
     error[k] = measured(strprintf("%d cells, rms error of stresses", 8 << k), std::sqrt(sum / all));
   }
-  EXPECT_LT(error[1], 0.002);
-  EXPECT_GT(measured("order", std::log2(error[0] / error[1])), 1.5);
+  EXPECT_LT(error[1], mls ? 0.002 : 0.0027);
+  EXPECT_GT(measured("order", std::log2(error[0] / error[1])), mls ? 1.5 : 1.4);
 }
 
 // each step is in equilibrium with the temperatures of its end, whatever the way

@@ -41,7 +41,7 @@ static constexpr double MAX_SIZE = 0.5;
 // its root, but no mass
 static constexpr double OF_PLACES = 32.0 * std::numeric_limits<double>::epsilon();
 // boxes end before fixed faces, by this share of the distance of their center
-static constexpr double OF_FACES = 1.0e-9;
+static constexpr double OF_FACES = 1.0e-12;
 // of the places of corners, in node spacings
 static constexpr double ROUND_OFF = 1.0e-9;
 
