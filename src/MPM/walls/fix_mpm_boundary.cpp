@@ -307,6 +307,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
   const MPMWallMotion in_step = wall.motion;
   if (stage == START && !wall.motion.uniform) wall.motion = in_step.at_end_of_step(dt);
   contact.decided = stage == MAPPED_BACK || stage == AGAIN;
+  wall.by_distance = wall.kind == MPMWall::SEPARATE && !trial.has_begun();
   for (std::size_t k = 0; k < nodes.size(); k++) {
     auto &list = nodes[k];
     if (count && wall.kind == MPMWall::SEPARATE && !trial.has_begun())
@@ -321,6 +322,7 @@ void FixMPMBoundary::act(double dt, Stage stage)
     reaction.end_field();
   }
   wall.motion = in_step;
+  wall.by_distance = false;    // between steps, a solver may ask
   if (count) wall.state.acted = 1;
   if (count && thin_regions.is_due()) thin_regions.report();
 }

@@ -60,7 +60,7 @@ bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLin
   double extrapolated = 0.0, levers = 0.0;
   int first = 0;
   // nodes see points with a size that reach into the next cell, and no farther
-  const bool sized = field.options.has_size(), by_distance = wall.kind == MPMWall::SEPARATE;
+  const bool sized = field.options.has_size();
   double place = 0.0;    // position of the wall, in nodes from the outermost one
   for (int j = 0; j < line.n; j++) place += j * line.weight[inward > 0 ? j : line.n - 1 - j];
   bool reached = false;
@@ -70,8 +70,8 @@ bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLin
     const bool beyond = sized && place - j > 1.0 - AT_NODE;
     const bool matters = line.weight[k] >= MIN_WEIGHT[order] && !beyond;
     if (!r || r[3] <= least) {
-      if (!reached && matters && !keeps && !by_distance) return false;
-      if (n == 0 && (keeps || beyond || by_distance || (order == 1 && j == 0))) {
+      if (!reached && matters && !keeps && !wall.by_distance) return false;
+      if (n == 0 && (keeps || beyond || wall.by_distance || (order == 1 && j == 0))) {
         extrapolated += line.weight[k];
         levers -= j * line.weight[k];
       }

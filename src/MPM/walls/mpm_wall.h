@@ -119,6 +119,8 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
   bool in_implicit_steps = false;
   bool looks_ahead = false;        ///< looks for material that comes to the wall in implicit steps
   bool moves_and_holds = false;    ///< a moving region holds material by lines in implicit steps
+  /** Do distances tell in this step where material is, and not the masses of outer nodes? */
+  bool by_distance = false;
   bool looks_for_thin_places = true;    ///< no such place has been reported yet
   bool is_grip =
       false;    ///< the material inside moves with the region, see MPMWallTrial::find_carried()
