@@ -297,6 +297,29 @@ SERIAL_TEST(Doubts, PointsMovedBetweenRuns)
             0);
 }
 
+// a round body of whole points rolls from edge to edge: told where friction acts and it has turned
+SERIAL_TEST(Doubts, PolygonsThatRoll)
+{
+  const auto disk = [](const std::string &points, const std::string &wall, double spin,
+                       const std::string &shape = "cylinder z 0.5 0.25 0.25 INF INF") {
+    return told(
+        plane("si", "f f", "0 1 0 1", 1, 0.025) + "fix grid all mpm 0.05\nregion d " + shape +
+            "\ncreate_points 1 region d ppc 2 " + points +
+            "\nfix m all mpm/material density 1000 neohookean 1e6 0.3\n" + wall +
+            strprintf("\nvariable u atom %g*(0.25-y)\nvariable v atom %g*(x-0.5)\n", spin, spin) +
+            "velocity all set v_u v_v 0\nfix dt all mpm/dt 0.5 until 0.1\nthermo 10000\nrun "
+            "100000\nrun 1\n",
+        "rolls and slips as a polygon");
+  };
+  const std::string rough = "fix w all mpm/boundary ylo separate friction 0.3";
+  EXPECT_EQ(disk("", rough, 5.0), 1);
+  EXPECT_EQ(disk("", rough, 0.5), 0);
+  EXPECT_EQ(disk("", "fix w all mpm/boundary ylo separate", 5.0), 0);
+  EXPECT_EQ(disk("cut yes", rough, 5.0), 0);
+  EXPECT_EQ(disk("relax 20", rough, 5.0), 0);
+  EXPECT_EQ(disk("", rough, 5.0, "block 0.3 0.7 0.1 0.3 INF INF"), 0);
+}
+
 // fluid is one of the flow, whatever law there is for it; solids in it have theirs
 SERIAL_TEST(Doubts, LawsOfFluid)
 {

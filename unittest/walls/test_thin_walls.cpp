@@ -207,6 +207,37 @@ SERIAL_PARAMETER_TEST(Pile, ForceDoesNotJumpAtPlanesOfNodes, const char *, Value
 
 /* ------------------------------------------------ what nodes cannot tell is told */
 
+/** Is a tool, half of it at xlo, that is pushed into a block by 1.6 spacings said to be narrow? */
+static bool is_narrow(const std::string &tool, const std::string &kind, const char *mpm = "")
+{
+  return times_said(
+             plane("si", "f f", "0 2 0 1.5", 1, 0.03) + "fix grid all mpm 0.1 " + mpm +
+                 "\nregion soil block INF INF INF 1 INF INF\ncreate_points 1 region soil ppc 2\n"
+                 "fix m all mpm/material density 1000 linear 1e5 0.3\n"
+                 "fix sides all mpm/boundary xlo xhi ylo slip\nvariable down equal -2*time\n"
+                 "region tool " +
+                 tool + " move NULL v_down NULL\nfix w all mpm/boundary region tool " + kind +
+                 "\n" + run_until(0.08),
+             "moves into material and is so narrow") > 0;
+}
+
+SERIAL_TEST(ThinRegions, ToolsThatPushAreReported)
+{
+  const char *axis = "axisymmetric yes";
+  for (const char *kind : {"slip", "stick"}) {
+    SCOPED_TRACE(kind);
+    EXPECT_TRUE(is_narrow("block -1 0.4 1 3 INF INF", kind, axis));
+    EXPECT_FALSE(is_narrow("block -1 0.8 1 3 INF INF", kind, axis));
+    EXPECT_TRUE(is_narrow("block -1 0.2 1 3 INF INF", kind));
+    EXPECT_FALSE(is_narrow("block -1 0.4 1 3 INF INF", kind));
+    EXPECT_TRUE(is_narrow("block 0.8 1.2 1 3 INF INF", kind));
+    EXPECT_FALSE(is_narrow("block 0.5 1.5 1 3 INF INF", kind));
+    // one over the whole width has no edges, and one above the block touches nothing
+    EXPECT_FALSE(is_narrow("block -1 3 1 3 INF INF", kind));
+    EXPECT_FALSE(is_narrow("block -1 0.2 1.4 3 INF INF", kind));
+  }
+}
+
 const std::string THINNER = "Fix mpm/boundary w: its region tool is thinner than 1.5 node spacings";
 
 SERIAL_TEST(ThinRegions, AreReported)

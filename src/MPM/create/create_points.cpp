@@ -13,6 +13,7 @@
 #include "base/mpm_find_fixes.h"
 #include "base/mpm_input.h"
 #include "base/mpm_options.h"
+#include "base/mpm_points.h"
 #include "comm.h"
 #include "create/create_points_table.h"
 #include "create/mpm_point_columns.h"
@@ -33,6 +34,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -61,6 +63,17 @@ void CreatePoints::check_units_of_region() const
         "Create_points: region {} is only {:.4g} wide, less than a cell of fix mpm {}, as "
         "its lengths are in units of the lattice command: give it the keyword units box",
         r.id, largest, fix->id());
+}
+
+/** Is a body in this region round somewhere? A round hole does not count. */
+static bool is_round(const Region &region)
+{
+  static const std::set<std::string> styles = {"sphere", "cylinder", "cone", "ellipsoid",
+                                               "mpm/mesh"};
+  if (region.nregion == 1) return region.interior && styles.count(region.style);
+  return std::any_of(region.reglist, region.reglist + region.nregion, [](Region *part) {
+    return is_round(*part);
+  });
 }
 
 void CreatePoints::command(int narg, char **arg)
@@ -128,6 +141,11 @@ void CreatePoints::command(int narg, char **arg)
   if (atom->natoms < 0 || atom->natoms >= MAXBIGINT)
     error->all(FLERR, Error::NOLASTLINE, "Too many total atoms");
   if (region) check_units_of_region();
+  if (region && !cut && is_round(*region)) {
+    auto &has_steps = MPMPoints::get(atom)->has_steps;
+    has_steps.resize(atom->ntypes + 1);
+    has_steps[type] = true;
+  }
   if (npoints == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Create_points made no points: no site of the lattice with spacing {:.8g} is inside "

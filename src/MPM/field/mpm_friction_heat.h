@@ -40,9 +40,10 @@ struct MPMFrictionHeatOptions {
   void declare(MPM_NS::Options &, const char *yes, const char *first);
 };
 
-/** Interface of a fix with friction, for fix mpm/heat. */
+/** Interface of a fix that may have friction. */
 class MPMRubbing {
  public:
+  virtual bool has_friction() const = 0;
   /** Does it dissipate energy by friction although its input does not say what happens with the
    *  energy? */
   virtual bool loses_heat() const = 0;

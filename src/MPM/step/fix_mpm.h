@@ -57,6 +57,7 @@ class FixMPM : public FixMPMState, public MPMFieldOwner {
   std::unique_ptr<MPMPlan> plan;    // only in the driving instance
   std::unique_ptr<class MPMContinuation> continuation;
   std::unique_ptr<class MPMShapeWatch> shape_watch;
+  std::unique_ptr<class MPMPolygonWatch> polygon_watch;
   std::unique_ptr<class MPMSetupChecks> checks;
 
   bool no_torques = false;    // torques of atoms outside of neighbor lists are zero already
