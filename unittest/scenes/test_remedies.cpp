@@ -1193,6 +1193,28 @@ const Remedy outputs[] = {
      {{"boundary ylo", "boundary xlo ylo"}}},
 };
 
+// a run without set-up knows only what was there at the last one
+const char *const ANEW = "use run without pre no";
+const Edit SET_UP = {{"run 2 pre no", "run 2"}};
+const Remedy runs[] = {
+    {"AnewField", one("", "run 1\nfix A one mpm 1.0 shape cubic\nrun 2 pre no\n"), ANEW, SET_UP},
+    {"AnewWall",
+     one("", "run 1\nunfix floor\nfix floor all mpm/boundary ylo stick\nrun 2 pre no\n"), ANEW,
+     SET_UP},
+    {"AnewLoad",
+     one("",
+         "run 1\nregion top plane 0 3 0 0 -1 0\n"
+         "fix l all mpm/traction region top pressure 0.1\nrun 2 pre no\n"),
+     ANEW, SET_UP},
+    {"AnewFlow", flow("", "") + "run 1\nfix w one mpm/incompressible 1.0 1.0\nrun 2 pre no\n", ANEW,
+     SET_UP},
+    {"AnewMesh", meshed("", "run 1\nfix M one mpm/mesh QUADS slip ylo frame total\nrun 2 pre no\n"),
+     ANEW, SET_UP},
+    {"AnewElements",
+     START + LINE + NVE + STEP + "run 1\nfix e two mpm/elements LINE thickness 0.1\nrun 2 pre no\n",
+     ANEW, SET_UP},
+};
+
 std::vector<Remedy> all_remedies()
 {
   std::vector<Remedy> all;
@@ -1213,6 +1235,7 @@ std::vector<Remedy> all_remedies()
   append(grains);
   append(rigids);
   append(outputs);
+  append(runs);
   return all;
 }
 

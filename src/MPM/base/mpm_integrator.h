@@ -10,11 +10,14 @@
 #define LMP_MPM_INTEGRATOR_H
 
 #include "error.h"
+#include "fix.h"
 #include "lammps.h"
+#include "modify.h"
 #include "update.h"
 #include "utils.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -30,16 +33,49 @@ inline void check_integrator(LAMMPS *lmp, const std::string &who)
                     who);
 }
 
-/** Start of a step: stops if LAMMPS has not set the fix up, as it does not after the end of a run
- *  within another one. */
-inline void check_set_up(LAMMPS *lmp, const std::string &who)
-{
-  if (lmp->update->whichflag != 1)
+/** Has LAMMPS set a fix that moves points up for a step? */
+class MPMSetUp {
+ public:
+  /** In init(). */
+  void remember(LAMMPS *lmp)
+  {
+    numbers = find(lmp);
+    known = true;
+  }
+  /** Start of a step: stops if there was no set-up, as there is none after the end of a run within
+   *  another one, or if fixes of this package have been defined or deleted since then, as run ... pre
+   *  no would use what is gone, and leave out what is new. who: the fix that asks. */
+  void check(LAMMPS *lmp, const std::string &who) const
+  {
+    const Update &update = *lmp->update;
+    if (update.whichflag != 1)
+      lmp->error->all(FLERR, Error::NOLASTLINE,
+                      "{} has not been set up for this step: a command run among the commands of "
+                      "run every ends the run that it is part of, so use a loop of runs",
+                      who);
+    if (update.ntimestep != update.firststep + 1 || (known && numbers == find(lmp))) return;
     lmp->error->all(FLERR, Error::NOLASTLINE,
-                    "{} has not been set up for this step: a command run among the commands of "
-                    "run every ends the run that it is part of, so use a loop of runs",
+                    "{}: fixes mpm/... have been defined or deleted since the last set-up, which "
+                    "run with pre no leaves out: use run without pre no",
                     who);
-}
+  }
+
+ private:
+  bool known = false;
+  std::vector<int> numbers;
+
+  /** LAMMPS numbers all fixes that it makes. */
+  struct Number : Fix {
+    static int of(const Fix &fix) { return fix.*(&Number::instance_me); }
+  };
+  static std::vector<int> find(LAMMPS *lmp)
+  {
+    std::vector<int> list;
+    for (const auto *fix : lmp->modify->get_fix_list())
+      if (utils::strmatch(fix->style, "^mpm")) list.push_back(Number::of(*fix));
+    return list;
+  }
+};
 
 }    // namespace LAMMPS_NS
 #endif

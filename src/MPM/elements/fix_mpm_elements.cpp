@@ -159,6 +159,7 @@ void FixMPMElements::make_elements(const Mesh &mesh)
 
 void FixMPMElements::init()
 {
+  set_up.remember(lmp);
   nodes.check();
   has_lattice = field_of_nodes() != nullptr;
   uncoupled.begin_run(*this);

@@ -57,7 +57,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   }
   void post_force(int) override
   {
-    check_set_up(lmp, "Fix mpm/elements");
+    set_up.check(lmp, "Fix mpm/elements");
     uncoupled.look();
     compute(false);
   }
@@ -149,6 +149,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   std::vector<MPM_NS::ElementBody::NumberedFace> all_faces() const;
 
  private:
+  MPMSetUp set_up;
   int dim;                // of space
   int max_of_node = 0;    // largest number of elements that belong to one node
   bigint nelements;       // of the mesh

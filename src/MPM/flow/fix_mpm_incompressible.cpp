@@ -74,6 +74,7 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
 void FixMPMIncompressible::init()
 {
   check_integrator(lmp, "Fix mpm/incompressible");
+  set_up.remember(lmp);
   if (domain->box_change_size || domain->box_change_shape)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/incompressible requires a box of constant size and shape: remove the fix "
@@ -120,7 +121,7 @@ void FixMPMIncompressible::pre_force(int)
  *  period. */
 void FixMPMIncompressible::initial_integrate(int)
 {
-  check_set_up(lmp, "Fix mpm/incompressible");
+  set_up.check(lmp, "Fix mpm/incompressible");
   flow->checks.look();
   flow->step();
   travel += flow->largest_velocity() * update->dt;

@@ -15,6 +15,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 #ifndef LMP_FIX_MPM_INCOMPRESSIBLE_H
 #define LMP_FIX_MPM_INCOMPRESSIBLE_H
 
+#include "base/mpm_integrator.h"
 #include "base/mpm_state.h"
 #include "base/mpm_step_limit.h"
 #include "field/mpm_interfaces.h"
@@ -67,6 +68,7 @@ class FixMPMIncompressible :
   void check_density(double fluid, const std::string &who) const override;
 
  private:
+  MPMSetUp set_up;
   std::unique_ptr<MPMFlow> flow;
   MPMRows gradient;       // [n][flow_slopes(dim)] of velocities of points, with apic
   double travel = 0.0;    // largest distance that points have moved since neighbor lists were made

@@ -87,6 +87,7 @@ FixMPMMesh::FixMPMMesh(LAMMPS *lmp, int narg, char **arg) :
 void FixMPMMesh::init()
 {
   check_integrator(lmp, "Fix mpm/mesh");
+  set_up.remember(lmp);
   if (domain->triclinic)
     error->all(FLERR, Error::NOLASTLINE, "Fix mpm/mesh requires an orthogonal box");
   for (int d = 0; d < mesh->dim; d++)
@@ -407,7 +408,7 @@ void FixMPMMesh::make_plan()
 
 void FixMPMMesh::initial_integrate(int)
 {
-  check_set_up(lmp, "Fix mpm/mesh");
+  set_up.check(lmp, "Fix mpm/mesh");
   uncoupled.look();
   stages.run();
   steps++;

@@ -15,6 +15,7 @@ FixStyle(mpm/mesh,FixMPMMesh);
 #ifndef LMP_FIX_MPM_MESH_H
 #define LMP_FIX_MPM_MESH_H
 
+#include "base/mpm_integrator.h"
 #include "base/mpm_stage_list.h"
 #include "base/mpm_state.h"
 #include "base/mpm_step_limit.h"
@@ -60,6 +61,7 @@ class FixMPMMesh :
   const MPMStageList &plan() const { return stages; }
 
  private:
+  MPMSetUp set_up;
   std::unique_ptr<MPM_NS::BackgroundMesh> mesh;
   std::unique_ptr<MPMMeshForces> forces;
   std::unique_ptr<MPMMeshBody> body;

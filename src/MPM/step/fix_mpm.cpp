@@ -108,6 +108,7 @@ int FixMPM::setmask()
 void FixMPM::init()
 {
   check_integrator(lmp, "Fix mpm");
+  set_up.remember(lmp);
   field->points = MPMPoints::get(atom);
   field->check_box();
   if (domain->box_change_size || domain->box_change_shape)
@@ -214,8 +215,8 @@ void FixMPM::setup(int)
 
 void FixMPM::initial_integrate(int /*vflag*/)
 {
+  set_up.check(lmp, "Fix mpm");
   if (!plan) return;
-  check_set_up(lmp, "Fix mpm");
   checks->look();
   plan->step();
 }

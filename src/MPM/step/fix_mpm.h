@@ -15,6 +15,7 @@ FixStyle(mpm,FixMPM);
 #ifndef LMP_FIX_MPM_H
 #define LMP_FIX_MPM_H
 
+#include "base/mpm_integrator.h"
 #include "base/mpm_state.h"
 #include "field/mpm_field.h"
 
@@ -55,6 +56,7 @@ class FixMPM : public FixMPMState, public MPMFieldOwner {
 
  private:
   std::unique_ptr<MPMPlan> plan;    // only in the driving instance
+  MPMSetUp set_up;
   std::unique_ptr<class MPMContinuation> continuation;
   std::unique_ptr<class MPMShapeWatch> shape_watch;
   std::unique_ptr<class MPMPolygonWatch> polygon_watch;

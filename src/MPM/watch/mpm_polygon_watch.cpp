@@ -63,8 +63,8 @@ void MPMPolygonWatch::finish()
           "Fix mpm {}: friction acts and points of type {} have turned, which create_points cut "
           "out "
           "of a lattice as whole points: if this is a round body, it rolls and slips as a polygon, "
-          "and gets 7 to 50 % too little spin where it slips, with any spacing: use "
-          "create_points ... cut yes",
+          "and gets 7 to 50 % too little spin where it slips, with any spacing: use create_points "
+          "... cut yes, or relax 20 for points of equal masses",
           field.id(), type);
   }
 }
