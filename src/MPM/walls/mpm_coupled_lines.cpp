@@ -129,7 +129,7 @@ void MPMCoupledLines::add_rows(std::size_t k, const MPMWallReaction &reaction, c
   for (int b = 0; b < (constraint.is_straight() ? 2 : 1); b++) {
     for (int j = 0; j < constraint.n; j++) row.c[j] = b ? constraint.B[j] : constraint.A[j];
     for (int of = 0; of < (sticks ? dim : 1); of++) {
-      const double limit = std::fabs(old[of][constraint.inner]);
+      const double limit = constraint.limit_of_old(old[of]);
       row.sum[of] = row.old[of] = 0.0;
       for (int j = 0; j < constraint.n; j++) {
         row.sum[of] += row.c[j] * relative[of][j];

@@ -429,7 +429,7 @@ void MPMCrossingLines::change_old(const MPMLineConstraint &constraint, const dou
       along[k] += n[d] * old[d][k];
     }
   const auto take_away = [&](const double *of, double *by) {
-    const double limit = fabs(of[constraint.inner]);
+    const double limit = constraint.limit_of_old(of);
     for (int k = 0; k < constraint.n; k++) relative[k] = std::max(-limit, std::min(of[k], limit));
     constraint.solve(relative, by);
   };

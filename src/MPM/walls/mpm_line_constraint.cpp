@@ -25,6 +25,7 @@
 #include "walls/mpm_wall.h"
 
 #include <algorithm>
+#include <cmath>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -33,6 +34,7 @@ using namespace MPM_NS;
 static constexpr double MIN_WEIGHT[4] = {0.0, 0.5, 0.02, 0.0045};
 static constexpr double OUTSIDE = 0.25;      // node spacings
 static constexpr double AT_NODE = 1.0e-6;    // node spacings
+static constexpr double LIGHT = 1.0e-3;      // mass of a node over that of another one
 
 int MPMLineConstraint::weights_at(const MPMField &field, int axis, int inward, double x, int &first,
                                   double *weight)
@@ -107,6 +109,21 @@ bool MPMLineConstraint::find(const MPMWall &wall, MPMField &field, const NodeLin
   if (at_node) inner = std::min(inner, (int) (std::max_element(A, A + n) - A) + 1);
   prepare(n == line.n && !at_node);
   return true;
+}
+
+double MPMLineConstraint::part_of_light(double mass, double heavy)
+{
+  return heavy > 0.0 ? std::min(1.0, mass / (LIGHT * heavy)) : 1.0;
+}
+
+/** Points that end in a plane of nodes but for round-off give the nodes beyond it a mass of
+ *  round-off, with any velocity. */
+double MPMLineConstraint::limit_of_old(const double *relative) const
+{
+  double limit = std::fabs(relative[0]);
+  for (int k = 1; k <= inner; k++)
+    limit += part_of_light(record[k][3], heaviest) * (std::fabs(relative[k]) - limit);
+  return limit;
 }
 
 /** With inverse masses w, and D_jk = A_j B_k - A_k B_j (Lagrange's identity, which does not lose

@@ -23,8 +23,7 @@ class MPMLineConstraint {
  public:
   static constexpr int MOST = NodeLine::MOST;
 
-  int n = 0;        ///< number of nodes; zero: there is no constraint
-  int inner = 0;    ///< index of the node whose old velocity FLIP takes as that near the wall
+  int n = 0;    ///< number of nodes; zero: there is no constraint
   int64_t node[MOST];
   const double *record[MOST];
   /** Velocities of the wall at the nodes. */
@@ -48,8 +47,15 @@ class MPMLineConstraint {
   /** Finds the change of velocities of least kinetic energy for velocities relative to the wall.
    *  Returns the multiplier of A, so that the impulse is total times it. */
   double solve(const double *relative, double *change) const;
+  /** Bound of old velocities that count as consistent with the wall, from these velocities of the
+   *  nodes relative to it: that of the first node inside, as far as it has mass. */
+  double limit_of_old(const double *relative) const;
+  /** How much a node counts that may have the mass of round-off next to a heavy one: from 0 to 1,
+   *  continuously. */
+  static double part_of_light(double mass, double heavy);
 
  private:
+  int inner = 0;                           // index of the first node inside
   bool straight = false;                   // B is used
   double inverse[MOST], heaviest = 0.0;    // inverse masses, 1 for the heaviest node
   double AA = 0.0, det = 0.0;

@@ -300,11 +300,14 @@ void MPMMirrorNodes::project(MPMWallReaction &reaction, const Image *image, int 
   }
 }
 
-/** Bound of old velocities that count as consistent with the wall, from the first node inside, see
- *  FLIP above. */
-static void limit_of_old(const double *record, const double *wall, int dim, double *limit)
+/** Bound of old velocities that count as consistent with the wall, from the first node inside next
+ *  to a node of this mass, see FLIP above. */
+static void limit_of_old(const double *record, double mass, const double *wall, int dim,
+                         double *limit)
 {
-  for (int d = 0; d < dim; d++) limit[d] = record[3] > 0.0 ? fabs(record[4 + d] - wall[d]) : 0.0;
+  const double part = MPMLineConstraint::part_of_light(record[3], mass);
+  for (int d = 0; d < dim; d++)
+    limit[d] = record[3] > 0.0 ? part * fabs(record[4 + d] - wall[d]) : 0.0;
 }
 
 void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &face,
@@ -348,7 +351,7 @@ void MPMMirrorNodes::act_on_column(MPMWallContact &contact, const MPMBoxFace &fa
   if (wall.kind == MPMWall::SLIP && reaction.old_share() > 0.0) {
     prescribed.hold[a] = true;
     if (column.node[1] >= 0)
-      limit_of_old(grid.record(column.node[1]), wall.motion.before, dim, prescribed.limit);
+      limit_of_old(grid.record(column.node[1]), r[3], wall.motion.before, dim, prescribed.limit);
     to_stick[a] += reaction.old_share() * r[3] * wall.motion.old_relative(r, a, limit[a]);
     for (int k = 0; k < npairs; k++)
       to_stick[a] += reaction.old_share() * pairs[k].mass *
@@ -381,8 +384,11 @@ void MPMMirrorNodes::act_on_group(MPMWallReaction &reaction, const Group &group)
   Prescribed prescribed = {};
   wall.motion.velocity(grid, group.wall, prescribed.V);
   const bool hold = reaction.old_share() > 0.0;
-  if (hold && group.inner >= 0)
-    limit_of_old(grid.record(group.inner), wall.motion.before, dim, prescribed.limit);
+  if (hold && group.inner >= 0) {
+    double heaviest = 0.0;
+    for (int k = 0; k < n; k++) heaviest = std::max(heaviest, grid.record(first[k].node)[3]);
+    limit_of_old(grid.record(group.inner), heaviest, wall.motion.before, dim, prescribed.limit);
+  }
   for (int d = 0; d < dim; d++) {
     prescribed.share[d] = group.prescribed[d] ? 1.0 : 0.0;
     prescribed.hold[d] = hold && group.prescribed[d];
@@ -419,7 +425,8 @@ void MPMMirrorNodes::act_on_line(MPMWallContact &contact, const MPMBoxFace &face
     for (int k = 0; k < m; k++) relative[k] = r[k][d] - V[k][d];
     lambda[d] = constraint.solve(relative, change[d]);
     if (!hold || !(wall.kind == MPMWall::STICK ? prescribed(d) : d == a)) continue;
-    const double limit = fabs(r[constraint.inner][4 + d] - wall.motion.before[d]);
+    for (int k = 0; k < m; k++) relative[k] = r[k][4 + d] - wall.motion.before[d];
+    const double limit = constraint.limit_of_old(relative);
     for (int k = 0; k < m; k++) relative[k] = wall.motion.old_relative(r[k], d, limit);
     lambda_old[d] = constraint.solve(relative, change_old[d]);
   }
