@@ -313,6 +313,8 @@ SERIAL_TEST(Doubts, PolygonsThatRoll)
   };
   const std::string rough = "fix w all mpm/boundary ylo separate friction 0.3";
   EXPECT_EQ(disk("", rough, 5.0), 1);
+  // half a turn
+  EXPECT_EQ(disk("", "fix w all mpm/boundary ylo separate friction 1e-6", 31.4), 1);
   EXPECT_EQ(disk("", rough, 0.5), 0);
   EXPECT_EQ(disk("", "fix w all mpm/boundary ylo separate", 5.0), 0);
   EXPECT_EQ(disk("cut yes", rough, 5.0), 0);

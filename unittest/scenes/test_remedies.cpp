@@ -1206,7 +1206,7 @@ const Remedy runs[] = {
          "run 1\nregion top plane 0 3 0 0 -1 0\n"
          "fix l all mpm/traction region top pressure 0.1\nrun 2 pre no\n"),
      ANEW, SET_UP},
-    {"AnewFlow", flow("", "") + "run 1\nfix w one mpm/incompressible 1.0 1.0\nrun 2 pre no\n", ANEW,
+    {"AnewFlow", flow("") + "run 1\nfix w one mpm/incompressible 1.0 1.0\nrun 2 pre no\n", ANEW,
      SET_UP},
     {"AnewMesh", meshed("", "run 1\nfix M one mpm/mesh QUADS slip ylo frame total\nrun 2 pre no\n"),
      ANEW, SET_UP},

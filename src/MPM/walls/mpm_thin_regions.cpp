@@ -39,18 +39,17 @@ double MPMThinRegions::error_of_force(const MPMWallNodes &list) const
   const double *const u = wall.motion.shift;
   const int dim = list.field.lattice.dim;
   if (!region->bboxflag) return 0.0;
-  const int along = (int) (std::max_element(u, u + 3,
-                                            [](double a, double b) {
-                                              return std::fabs(a) < std::fabs(b);
-                                            }) -
-                           u);
-  if (std::fabs(u[along]) < 0.9 * MathExtra::len3(u)) return 0.0;
+  int along = 0;
+  for (int d = 1; d < dim; d++)
+    if (std::fabs(u[d]) > std::fabs(u[along])) along = d;
+  if (!(std::fabs(u[along]) > 0.9 * MathExtra::len3(u))) return 0.0;    // at rest, too
   const double lo[3] = {region->extent_xlo, region->extent_ylo, region->extent_zlo},
                hi[3] = {region->extent_xhi, region->extent_yhi, region->extent_zhi};
   double area = 1.0;
   for (int d = 0; d < dim; d++) {
     if (d == along) continue;
-    const bool below = lo[d]<domain->boxlo[d], above = hi[d]> domain->boxhi[d];
+    const bool below = lo[d] <= domain->boxlo[d];
+    const bool above = hi[d] >= domain->boxhi[d];
     if (below && above) continue;
     double width = std::min(hi[d], domain->boxhi[d]) - std::max(lo[d], domain->boxlo[d]);
     if (!below && !above) width *= 0.5;

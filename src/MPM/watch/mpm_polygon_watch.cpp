@@ -22,12 +22,14 @@
 
 using namespace LAMMPS_NS;
 
-/** Has the point turned [sine of the angle] and is hardly strained [change of squared lengths]? */
+/** Has the point turned by an angle whose sine is more than this, or by a right angle or more, and is
+ *  it hardly strained [change of squared lengths]? */
 static bool is_turned(const double *F)
 {
   constexpr double SINE = 0.2, STRAIN = 0.1;
   const double twice[3] = {F[7] - F[5], F[2] - F[6], F[3] - F[1]};
-  if (std::hypot(twice[0], twice[1], twice[2]) < 2.0 * SINE) return false;
+  const bool is_acute = F[0] + F[4] + F[8] > 1.0;    // 1 + 2 cos(angle)
+  if (is_acute && std::hypot(twice[0], twice[1], twice[2]) < 2.0 * SINE) return false;
   for (int a = 0; a < 3; a++)
     for (int b = a; b < 3; b++) {
       const double C = F[a] * F[b] + F[3 + a] * F[3 + b] + F[6 + a] * F[6 + b];
@@ -60,11 +62,10 @@ void MPMPolygonWatch::finish()
     if (comm->me == 0)
       error->warning(
           FLERR,
-          "Fix mpm {}: friction acts and points of type {} have turned, which create_points cut "
-          "out "
-          "of a lattice as whole points: if this is a round body, it rolls and slips as a polygon, "
-          "and gets 7 to 50 % too little spin where it slips, with any spacing: use create_points "
-          "... cut yes, or relax 20 for points of equal masses",
+          "Fix mpm {}: points of type {} have turned where friction acts, and create_points cut "
+          "them out of a lattice as whole points: if this is a round body, it rolls and slips as a "
+          "polygon, and gets 7 to 50 % too little spin where it slips, with any spacing: use "
+          "create_points ... cut yes, or relax 20 for points of equal masses",
           field.id(), type);
   }
 }
