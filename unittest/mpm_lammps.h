@@ -733,6 +733,13 @@ inline double measured(const std::string &what, double value)
   return value;
 }
 
+inline double sum_over_ranks(double x)
+{
+  double all;
+  MPI_Allreduce(&x, &all, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  return all;
+}
+
 /** Largest difference between two sets of states. Each quantity is relative to its largest
  *  magnitude; the stress is relative to the given one if that is larger. It is 1e300 if there are
  *  no points, not the same number of them, or NaN. */

@@ -214,13 +214,6 @@ inline double time_of_zero(Scene &run, const std::string &quantity, int every)
   return 1e300;
 }
 
-inline double sum_over_ranks(double x)
-{
-  double all;
-  MPI_Allreduce(&x, &all, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-  return all;
-}
-
 }    // namespace MPM_TEST
 
 #endif

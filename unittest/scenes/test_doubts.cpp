@@ -297,29 +297,35 @@ SERIAL_TEST(Doubts, PointsMovedBetweenRuns)
             0);
 }
 
-// a round body of whole points rolls from edge to edge: told where friction acts and it has turned
-SERIAL_TEST(Doubts, PolygonsThatRoll)
+// round bodies that roll where friction acts turn too slowly: as polygons, if they are of whole points,
+// and by the place of the normal force, if friction times radius is less than 1.5 spacings
+SERIAL_TEST(Doubts, RoundBodiesThatRoll)
 {
-  const auto disk = [](const std::string &points, const std::string &wall, double spin,
-                       const std::string &shape = "cylinder z 0.5 0.25 0.25 INF INF") {
-    return told(
-        plane("si", "f f", "0 1 0 1", 1, 0.025) + "fix grid all mpm 0.05\nregion d " + shape +
-            "\ncreate_points 1 region d ppc 2 " + points +
-            "\nfix m all mpm/material density 1000 neohookean 1e6 0.3\n" + wall +
-            strprintf("\nvariable u atom %g*(0.25-y)\nvariable v atom %g*(x-0.5)\n", spin, spin) +
-            "velocity all set v_u v_v 0\nfix dt all mpm/dt 0.5 until 0.1\nthermo 10000\nrun "
-            "100000\nrun 1\n",
-        "rolls and slips as a polygon");
+  const auto messages = [](const std::string &points, const std::string &wall, double spin,
+                           const std::string &shape = "cylinder z 0.5 0.25 0.25 INF INF") {
+    const auto scene = plane("si", "f f", "0 1 0 1", 1, 0.025) +
+        "fix grid all mpm 0.05\nregion d " + shape + "\ncreate_points 1 region d ppc 2 " + points +
+        "\nfix m all mpm/material density 1000 neohookean 1e6 0.3\n" + wall +
+        strprintf("\nvariable u atom %g*(0.25-y)\nvariable v atom %g*(x-0.5)\n", spin, spin) +
+        "velocity all set v_u v_v 0\nfix dt all mpm/dt 0.5 until 0.1\nthermo 10000\n"
+        "run 100000\nrun 1\n";
+    return std::make_pair(told(scene, "rolls and slips as a polygon"),
+                          told(scene, "the normal force is up to"));
   };
-  const std::string rough = "fix w all mpm/boundary ylo separate friction 0.3";
-  EXPECT_EQ(disk("", rough, 5.0), 1);
-  // half a turn
-  EXPECT_EQ(disk("", "fix w all mpm/boundary ylo separate friction 1e-6", 31.4), 1);
-  EXPECT_EQ(disk("", rough, 0.5), 0);
-  EXPECT_EQ(disk("", "fix w all mpm/boundary ylo separate", 5.0), 0);
-  EXPECT_EQ(disk("cut yes", rough, 5.0), 0);
-  EXPECT_EQ(disk("relax 20", rough, 5.0), 0);
-  EXPECT_EQ(disk("", rough, 5.0, "block 0.3 0.7 0.1 0.3 INF INF"), 0);
+  const auto polygon = std::make_pair(1, 0), small = std::make_pair(0, 1),
+             silent = std::make_pair(0, 0);
+  const std::string wall = "fix w all mpm/boundary ylo separate", rough = wall + " friction 0.35",
+                    smoother = wall + " friction 0.25";
+  EXPECT_EQ(messages("", rough, 5.0), polygon);
+  EXPECT_EQ(messages("", wall + " friction 1e-6", 31.4), polygon);    // half a turn
+  EXPECT_EQ(messages("", rough, 0.5), silent);
+  EXPECT_EQ(messages("", wall, 5.0), silent);
+  for (const char *points : {"cut yes", "relax 20"}) {
+    EXPECT_EQ(messages(points, smoother, 5.0), small);
+    EXPECT_EQ(messages(points, rough, 5.0), silent);
+    EXPECT_EQ(messages(points, wall, 5.0), silent);
+  }
+  EXPECT_EQ(messages("", rough, 5.0, "block 0.3 0.7 0.1 0.3 INF INF"), silent);
 }
 
 // fluid is one of the flow, whatever law there is for it; solids in it have theirs

@@ -1101,10 +1101,10 @@ const Remedy grains[] = {
 
 const Remedy rigids[] = {
     {"Rigid2d",
-     one("", "region tool block 9 12 1 9 INF INF\nfix tool all mpm/rigid tool density 2.0 slip\n"),
+     one("", "region tool block 9 12 0 10 INF INF\nfix tool all mpm/rigid tool density 2.0 slip\n"),
      "move a region with fix mpm/boundary",
-     {{"region tool block 9 12 1 9 INF INF\nfix tool all mpm/rigid tool density 2.0 slip",
-       "variable d equal -0.1*step*dt\nregion tool block 9 12 1 9 INF INF move v_d NULL NULL\nfix "
+     {{"region tool block 9 12 0 10 INF INF\nfix tool all mpm/rigid tool density 2.0 slip",
+       "variable d equal -0.1*step*dt\nregion tool block 9 12 0 10 INF INF move v_d NULL NULL\nfix "
        "tool all mpm/boundary region tool slip"}}},
 };
 

@@ -226,13 +226,13 @@ SERIAL_TEST(ThinRegions, ToolsThatPushAreReported)
   const char *axis = "axisymmetric yes";
   for (const char *kind : {"slip", "stick"}) {
     SCOPED_TRACE(kind);
-    EXPECT_TRUE(is_narrow("block -1 0.4 1 3 INF INF", kind, axis));
-    EXPECT_FALSE(is_narrow("block -1 0.8 1 3 INF INF", kind, axis));
-    EXPECT_TRUE(is_narrow("block -1 0.2 1 3 INF INF", kind));
-    EXPECT_FALSE(is_narrow("block -1 0.4 1 3 INF INF", kind));
-    EXPECT_FALSE(is_narrow("block 0 0.4 1 3 INF INF", kind));    // from the face of the box on
-    EXPECT_TRUE(is_narrow("block 0.8 1.2 1 3 INF INF", kind));
-    EXPECT_FALSE(is_narrow("block 0.5 1.5 1 3 INF INF", kind));
+    EXPECT_TRUE(is_narrow("block -1 0.8 1 3 INF INF", kind, axis));
+    EXPECT_FALSE(is_narrow("block -1 1.2 1 3 INF INF", kind, axis));
+    EXPECT_TRUE(is_narrow("block -1 0.4 1 3 INF INF", kind));
+    EXPECT_FALSE(is_narrow("block -1 0.6 1 3 INF INF", kind));
+    EXPECT_FALSE(is_narrow("block 0 0.6 1 3 INF INF", kind));    // from the face of the box on
+    EXPECT_TRUE(is_narrow("block 0.6 1.4 1 3 INF INF", kind));
+    EXPECT_FALSE(is_narrow("block 0.4 1.6 1 3 INF INF", kind));
     // one over the whole width has no edges, and one above the block touches nothing
     EXPECT_FALSE(is_narrow("block -1 3 1 3 INF INF", kind));
     EXPECT_FALSE(is_narrow("block -1 0.2 1.4 3 INF INF", kind));

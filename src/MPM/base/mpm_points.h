@@ -30,9 +30,13 @@ struct MPMPoints {
   static constexpr int size = 9 + 6;    ///< reals of a point
   MPMRows F;                            ///< [n][9] deformation gradient, row-major
   MPMRows tau;    ///< [n][6] Kirchhoff stress J sigma, tension > 0, xx yy zz xy xz yz
-  /** [type] Has a region cut points of this type out of a lattice, so that its surface has steps?
-   *  Empty: none. Not in restart files. */
-  std::vector<bool> has_steps;
+
+  /** A body that a region has made round. */
+  struct Round {
+    double radius = 0.0;       ///< half of its least width; zero: it is not round
+    bool has_steps = false;    ///< do whole points of a lattice make its surface?
+  };
+  std::vector<Round> round;    ///< [type]; empty: none. Not in restart files
 
   /** Volume over initial volume, J = det F. */
   double jacobian(int i) const { return det(F[i]); }

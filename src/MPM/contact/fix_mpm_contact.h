@@ -49,8 +49,8 @@ class FixMPMContact :
   Turn turn() const override { return BETWEEN_BODIES; }
   FixMPMContact(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
-  bool has_friction() const override { return friction.kinetic > 0.0; }
-  bool loses_heat() const override { return has_friction() && !heat.said; }
+  double coefficient() const override { return friction.kinetic; }
+  bool loses_heat() const override { return friction.kinetic > 0.0 && !heat.said; }
   bool gives_heat() const override { return heat.heats(); }
   void init() override;
   void init_action() override;

@@ -76,6 +76,17 @@ static bool is_round(const Region &region)
   });
 }
 
+/** What is known of a round body is that of the last one of its type. */
+void CreatePoints::note_round() const
+{
+  auto &round = MPMPoints::get(atom)->round;
+  round.resize(atom->ntypes + 1);
+  const Region &r = *region;
+  double width = std::min(r.extent_xhi - r.extent_xlo, r.extent_yhi - r.extent_ylo);
+  if (domain->dimension == 3) width = std::min(width, r.extent_zhi - r.extent_zlo);
+  round[type] = {r.bboxflag ? 0.5 * width : HUGE_VAL, !cut};
+}
+
 void CreatePoints::command(int narg, char **arg)
 {
   if (domain->box_exist == 0)
@@ -141,11 +152,7 @@ void CreatePoints::command(int narg, char **arg)
   if (atom->natoms < 0 || atom->natoms >= MAXBIGINT)
     error->all(FLERR, Error::NOLASTLINE, "Too many total atoms");
   if (region) check_units_of_region();
-  if (region && !cut && is_round(*region)) {
-    auto &has_steps = MPMPoints::get(atom)->has_steps;
-    has_steps.resize(atom->ntypes + 1);
-    has_steps[type] = true;
-  }
+  if (region && is_round(*region)) note_round();
   if (npoints == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Create_points made no points: no site of the lattice with spacing {:.8g} is inside "

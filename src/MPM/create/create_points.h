@@ -134,6 +134,7 @@ class CreatePoints : public Command, private CreatePointsOptions {
   bool is_inside(const double *x) const;
   bigint ranges_in_box(Range *) const;
   void check_units_of_region() const;
+  void note_round() const;
   bigint make_points();
   bigint make_mesh_points();
   bigint make_table_points();

@@ -43,8 +43,8 @@ struct MPMFrictionHeatOptions {
 /** Interface of a fix that may have friction. */
 class MPMRubbing {
  public:
-  /** Does friction act between what it lets touch? */
-  virtual bool has_friction() const = 0;
+  /** Coefficient of friction between what it lets touch. */
+  virtual double coefficient() const = 0;
   /** Does it dissipate energy by friction although its input does not say what happens with the
    *  energy? */
   virtual bool loses_heat() const = 0;

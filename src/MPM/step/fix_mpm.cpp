@@ -44,7 +44,7 @@
 #include "watch/mpm_energy_watch.h"
 #include "watch/mpm_fracture_watch.h"
 #include "watch/mpm_point_summary.h"
-#include "watch/mpm_polygon_watch.h"
+#include "watch/mpm_rolling_watch.h"
 #include "watch/mpm_shape_watch.h"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
   checks.reset(new MPMSetupChecks(lmp, *field));
   continuation.reset(new MPMContinuation(lmp, *field));
   shape_watch.reset(new MPMShapeWatch(lmp, *field));
-  polygon_watch.reset(new MPMPolygonWatch(lmp, *field));
+  rolling_watch.reset(new MPMRollingWatch(lmp, *field));
   if (comm->me == 0)
     utils::logmesg(lmp, "Fix mpm {}, MPM package {}: spacing {} {}\n", id, MPM_VERSION, h,
                    options.declare(3).text());
@@ -262,7 +262,7 @@ void FixMPM::post_run()
   field->ledger.start.clear();
   if (field->affine) field->affine->remember_velocities();
   shape_watch->finish();
-  polygon_watch->finish();
+  rolling_watch->finish();
   if (field->counts().steps)
     field->plan->report(*field, bytes_per_point(), point_extremes(lmp, *field));
 }

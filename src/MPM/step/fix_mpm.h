@@ -59,7 +59,7 @@ class FixMPM : public FixMPMState, public MPMFieldOwner {
   MPMSetUp set_up;
   std::unique_ptr<class MPMContinuation> continuation;
   std::unique_ptr<class MPMShapeWatch> shape_watch;
-  std::unique_ptr<class MPMPolygonWatch> polygon_watch;
+  std::unique_ptr<class MPMRollingWatch> rolling_watch;
   std::unique_ptr<class MPMSetupChecks> checks;
 
   bool no_torques = false;    // torques of atoms outside of neighbor lists are zero already

@@ -63,7 +63,7 @@ double MPMThinRegions::error_of_force(const MPMWallNodes &list) const
 /** Is there material at the edges of a narrow tool? */
 void MPMThinRegions::look_at_edges(const MPMWallNodes &list, int index)
 {
-  constexpr double LARGE = 0.15;    // share of the force
+  constexpr double LARGE = 0.1;    // share of the force
   const auto now = (double) update->ntimestep;
   if (!wall.region || !wall.region_moves() || first_edge.knows(now)) return;
   const double error = error_of_force(list);

@@ -6,19 +6,20 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-#ifndef LMP_MPM_POLYGON_WATCH_H
-#define LMP_MPM_POLYGON_WATCH_H
+#ifndef LMP_MPM_ROLLING_WATCH_H
+#define LMP_MPM_ROLLING_WATCH_H
 
 #include "pointers.h"
 
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Warns of bodies that turn where friction acts, and whose round surface has the steps of a lattice
- *  of points: they roll from edge to edge, as a wheel without a rim, and turn too slowly. */
-class MPMPolygonWatch : protected Pointers {
+/** Warns of round bodies that turn where friction acts, and turn too slowly: those whose surface has
+ *  the steps of a lattice of points, which roll from edge to edge as a wheel without a rim, and those
+ *  with a small radius for the node spacing. */
+class MPMRollingWatch : protected Pointers {
  public:
-  MPMPolygonWatch(class LAMMPS *lmp, const MPMField &field) : Pointers(lmp), field(field) {}
+  MPMRollingWatch(class LAMMPS *lmp, const MPMField &field) : Pointers(lmp), field(field) {}
 
   /** End of a run. Warns once. Collective. */
   void finish();
