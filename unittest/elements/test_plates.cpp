@@ -437,7 +437,7 @@ static double neck(double h, double ratio, int rows)
             "comm_modify cutoff 1.5\ncreate_points 1 mesh " + file.name +
             " thickness 0.01\nfix m all mpm/material density 1 neohookean 1 0.3\n"
             "fix e all mpm/elements " +
-            file.name + " thickness 0.01\nfix dt all mpm/dt 0.9\n" +
+            file.name + " thickness 0.01\nfix dt all mpm/dt 0.8\n" +
             strprintf("region span block INF INF INF INF %.17g %.17g\ngroup span region span\n"
                       "region waist block INF INF INF INF %.17g %.17g\ngroup waist region waist\n",
                       -0.499 * length, 0.499 * length, -0.01 * length, 0.01 * length) +

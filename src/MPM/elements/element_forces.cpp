@@ -531,7 +531,12 @@ double ElementForces::stable_dt(tagint &tag, double &speed)
   tag = 0;
   speed = 0.0;
   for_batches(false, [&](ElementBatch &w) {
-    material->material->wave_speed(w.batch, c);
+    if (thin) {
+      const double *motion[BATCH];
+      for (int p = 0; p < w.n; p++) motion[p] = body.motion_of(w.state[p]);
+      plane_stress->wave_speed(w.batch, motion, c);
+    } else
+      material->material->wave_speed(w.batch, c);
     for (const auto &[number, row, rule, start] : w.elements) {
       double sum = 0.0, size = 0.0, largest = 0.0;
       const double stiffer = body.swell_of(row);

@@ -117,7 +117,8 @@ class ComposedMaterial : public Material {
   void update_with_tangent(Batch &b, Tangent &t) const override;
   const std::vector<ValidRange> &ranges() const override { return valid; }
   int outside(const Batch &b, int k, double *value) const override;
-  void wave_speed(const Batch &state, double *c) const override;
+  void elastic_speed(const Batch &state, double *c) const override;
+  void raise_speed(const Batch &b, double *c) const override;
   void stored_energy(const Batch &state, double *w) const override;
 
  private:

@@ -115,7 +115,7 @@ void ComposedMaterial::update_with_tangent(Batch &b, Tangent &t) const
   update(b, &t);
 }
 
-void ComposedMaterial::wave_speed(const Batch &state, double *c) const
+void ComposedMaterial::elastic_speed(const Batch &state, double *c) const
 {
   Batch copy;
   const Batch &b = without_viscous_stress(state, copy);
@@ -123,6 +123,10 @@ void ComposedMaterial::wave_speed(const Batch &state, double *c) const
     expanded_speed(b, c);
   else
     plain_speed(b, c);
+}
+
+void ComposedMaterial::raise_speed(const Batch &b, double *c) const
+{
   for (const auto &law : laws) {
     if (!law.kernels->raise_speed) continue;
     double solid_speed[BATCH];

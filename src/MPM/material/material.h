@@ -125,10 +125,17 @@ class Material {
    *  range. */
   virtual int outside(const Batch &, int k, double *value) const = 0;
 
-  /** c[n]: speed of the fastest (longitudinal) wave in the present state, increased for viscosity
-   *  such that h/c is the stable time step. The batch has n, h and the current F, J, stress,
-   *  history; A and Jold are not set. */
-  virtual void wave_speed(const Batch &, double *c) const = 0;
+  /** c[n]: speed of the fastest (longitudinal) wave in the present state, without viscosity. The
+   *  batch has n, h and the current F, J, stress, history; A and Jold are not set. */
+  virtual void elastic_speed(const Batch &, double *c) const = 0;
+  /** Raises c[n] for viscosity such that h/c is the stable time step; batch: as elastic_speed(). */
+  virtual void raise_speed(const Batch &, double *c) const = 0;
+  /** Both. */
+  void wave_speed(const Batch &b, double *c) const
+  {
+    elastic_speed(b, c);
+    raise_speed(b, c);
+  }
 
   /** w[n]: energy stored per reference volume in the present state (elastic energy and that of the
    *  equation of state). In the batch, A and Jold are not set. */

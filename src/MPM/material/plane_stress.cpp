@@ -37,6 +37,7 @@ PlaneStress::PlaneStress(const Material &material, int dim, int along, bool comp
   history.resize(material.history().size() * BATCH);
   check_symmetry();
   if (!compression) check_elasticity();
+  find_speed();
 }
 
 static void normalize(double *v)
@@ -447,17 +448,43 @@ void PlaneStress::check_elasticity() const
     throw std::runtime_error("it must be free of stress when it is not deformed");
 }
 
-/** From the stress in a small strain, 2 mu e + lambda tr(e) I. */
-std::array<double, 2> PlaneStress::elastic_constants() const
+/** Lame's constants {lambda, mu} at rest, from the stress 2 mu e + lambda tr(e) I in a small
+ *  strain. */
+static std::array<double, 2> lame_constants(const Material &material)
 {
-  if (axes) throw std::runtime_error("it must be isotropic");
-  check_elasticity();
   double stress[9];
   One one(material);
   one.go(UNIT, STRAINED);
   one.get(stress);
   const double trace = STRAINED[0] + STRAINED[4] + STRAINED[8] - 3.0;
-  const double mu = 0.5 * stress[1] / STRAINED[1],
-               lambda = (stress[0] - 2.0 * mu * (STRAINED[0] - 1.0)) / trace;
+  const double mu = 0.5 * stress[1] / STRAINED[1];
+  return {(stress[0] - 2.0 * mu * (STRAINED[0] - 1.0)) / trace, mu};
+}
+
+std::array<double, 2> PlaneStress::elastic_constants() const
+{
+  if (axes) throw std::runtime_error("it must be isotropic");
+  check_elasticity();
+  const auto [lambda, mu] = lame_constants(material);
   return {mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), 0.5 * lambda / (lambda + mu)};
+}
+
+/** Does it come back from a large strain without stress? What yields or breaks does not. */
+void PlaneStress::find_speed()
+{
+  constexpr double LARGE[9] = {1.2, 0.0, 0.0, 0.0, 1.0 / 1.2, 0.0, 0.0, 0.0, 1.0};
+  double strained[9], back[9];
+  One one(material);
+  one.go(UNIT, LARGE);
+  one.get(strained);
+  one.go(LARGE, UNIT);
+  one.get(back);
+  springs_back = norm(back) <= 0.01 * norm(strained);
+  if (axes) return;
+  const auto [lambda, mu] = lame_constants(material);
+  const double modulus = lambda + 2.0 * mu;
+  // surfaces and strips have one direction without stress, cables two
+  const double released = last_axis() - along == 1 ? lambda * lambda / modulus
+                                                   : lambda * lambda / (lambda + mu);
+  share_at_rest = 1.0 - released / modulus;
 }

@@ -56,6 +56,12 @@ class PlaneStress {
    *  for which no state was found. */
   int update(Batch &, const Point *, const std::function<void(Batch &)> &last);
 
+  /** c[n]: speed of the fastest wave along the body in the present state, increased for viscosity as
+   *  by Material::wave_speed(). Batch: as there. motion[n][9]: Point::along of the state. Elastic
+   *  materials have their own tangent, where they have one; the speed of others, whose elastic
+   *  strains are small, is that in the material times the ratio of the two at rest. */
+  void wave_speed(const Batch &, const double *const *motion, double *c) const;
+
   /** Young's modulus and Poisson's ratio at rest. Throws std::runtime_error if the material is not
    *  isotropic and elastic. */
   std::array<double, 2> elastic_constants() const;
@@ -84,7 +90,9 @@ class PlaneStress {
   State state[BATCH];
   double start[6][BATCH];
   std::vector<double> history;
-  double stiffness = 0.0;    // stiffness of the material in small compression
+  double stiffness = 0.0;        // stiffness of the material in small compression
+  double share_at_rest = 1.0;    // modulus of waves along the body over that in the material
+  bool springs_back = false;     // is it elastic in large strains?
 
   int last_axis() const { return dim == 2 ? 2 : 3; }
   void find_axes(const Point &, State &) const;
@@ -96,6 +104,9 @@ class PlaneStress {
   int solve(Batch &, const Point *);
   void check_symmetry();
   void check_elasticity() const;
+  void find_speed();
+  void find_directions(const double *motion, double (*axis)[3]) const;
+  double largest_share(const Tangent &, const Batch &, int p, const double *motion) const;
 };
 
 }    // namespace MPM_NS
