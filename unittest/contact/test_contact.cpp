@@ -323,6 +323,23 @@ SERIAL_TEST(Normals, LogisticRegressionFindsAnInclinedPlane)
   }
 }
 
+// in space, periodic across, as in the plane, up to the ridge of the regression, which has another
+// weight among more points
+SERIAL_TEST(Normals, LogisticRegressionInSpace)
+{
+  double v[2];
+  for (const int dim : {2, 3}) {
+    Scene run(replaced(tilted,
+                       {{"ANGLE", "20"},
+                        {"NORMAL", "logistic"},
+                        {"run 1400", "run 200"},
+                        {"dimension 2", strprintf("dimension %d", dim)},
+                        {"-0.05 0.05", dim == 2 ? "-0.05 0.05" : "-0.2 0.2"}}));
+    v[dim - 2] = run.evaluate("v_v") / run.evaluate("time");
+  }
+  EXPECT_NEAR(measured("in space over in the plane", v[1] / v[0]), 1.0, 1e-3);
+}
+
 TEST(Normals, LogisticRegressionIsTheSameOnAnyNumberOfRanks)
 {
   OnRanks run(replaced(tilted, {{"ANGLE", "20"}, {"NORMAL", "logistic"}, {"run 1400", ""}}),

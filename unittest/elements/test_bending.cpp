@@ -478,23 +478,29 @@ TEST(Bending, ForcesAreTheGradientOfEnergy)
   }
 }
 
-// n equal lines bent to an arc of angle 1: D angle^2/(2 l n), but for half a line at each end
+// lines bent to an arc of radius 5: D/(2 R^2) of each length, but for half a line at each end
 TEST(Bending, Arc)
 {
   const int n = 50;
-  double sum = 0.0;
-  for (int k = 0; k + 1 < n; k++) {
-    double X[3][3] = {{0.0}}, x[3][3] = {{0.0}}, f[3][3];
-    for (int m = 0; m < 3; m++) {
-      X[m][0] = 0.1 * (k + m);
-      x[m][0] = 5.0 * std::sin((k + m) / 50.0);
-      x[m][1] = 5.0 * std::cos((k + m) / 50.0);
+  for (const double uneven : {0.0, 0.04}) {
+    const auto place = [uneven](int k) {
+      return 0.1 * k + uneven * (k % 2);
+    };
+    double sum = 0.0, length = 0.0;
+    for (int k = 0; k + 1 < n; k++) {
+      double X[3][3] = {{0.0}}, x[3][3] = {{0.0}}, f[3][3];
+      for (int m = 0; m < 3; m++) {
+        X[m][0] = place(k + m);
+        x[m][0] = 5.0 * std::sin(place(k + m) / 5.0);
+        x[m][1] = 5.0 * std::cos(place(k + m) / 5.0);
+      }
+      BentLine bent;
+      bent.define(2, X);
+      sum += bent.bend(3.0, 2, x, f);
+      length += 0.5 * (place(k + 2) - place(k));
     }
-    BentLine bent;
-    bent.define(2, X);
-    sum += bent.bend(3.0, 2, x, f);
+    EXPECT_NEAR(sum / (3.0 / (2.0 * 5.0 * 5.0) * length), 1.0, 1e-12);
   }
-  EXPECT_NEAR(sum / (3.0 / (2.0 * 0.1 * n) * (n - 1) / n), 1.0, 1e-12);
 }
 
 // two triangles that are folded along their edge, turned, and strained alike have the energy of

@@ -223,6 +223,19 @@ TEST(Deleted, TakesItsKineticEnergy)
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-11);
 }
 
+// the summary tells of points that were deleted, and not of none
+SERIAL_TEST(Deleted, IsInTheSummary)
+{
+  const auto scene = [](double v) {
+    return plane("lj", "f f", "0 12 0 8", 1, 0.3) +
+        body("block 8 10 3 6 INF INF", "density 2 neohookean 1.0 0.3", "1.0 bad delete") +
+        strprintf("velocity all set %g 0 0\ntimestep 0.02\n", v) +
+        "neigh_modify delay 0 every 1 check yes\nrun 110\n";
+  };
+  EXPECT_EQ(times_said(scene(1.5), "points deleted so far"), 1);
+  EXPECT_EQ(times_said(scene(0.1), "points deleted so far"), 0);
+}
+
 // A perfectly plastic bar hits a wall: the share beta of the plastic work becomes heat; that work
 // is yield stress times plastic strain times volume, up to the change of the volume
 TEST(Heat, IsTheTaylorQuinneyShareOfThePlasticWork)

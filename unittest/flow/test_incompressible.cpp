@@ -797,6 +797,8 @@ SERIAL_TEST(Incompressible, BadInput)
        {fix + "0.1 1000\nset atom 1*10 mass 7", "10 points have another mass"},
        {"group some empty\nfix w some mpm/incompressible 0.1 1000", "no material points"},
        {fix + "0.1 1000\nvelocity all set 0 50 0", "node spacings in a time step"},
+       {fix + "0.1 1000 viscosity 1 implicit yes wall xhi stick 0 50",
+        "node spacings in a time step"},
        {fix + "0.1 1000 viscosity 1000", "too large for the viscosity"},
        {fix + "0.1 1000 iterations 1\nfix g all gravity 10 vector 1 1 0", "allow more iterations"},
        {fix + "0.1 1000\nvariable big atom exp(1000)\nvelocity all set v_big 0 0", "not a number"},

@@ -7,7 +7,7 @@
 
 // Heat that materials make of their own work, and solids that become liquids, in whole bodies.
 
-#include "mpm_lammps.h"
+#include "heat/heat_testing.h"
 
 using namespace MPM_TEST;
 

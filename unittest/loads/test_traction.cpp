@@ -588,6 +588,17 @@ SERIAL_TEST(Variables, InTimeAndPlace)
   EXPECT_NEAR((f[6] + 7.0 * f[0]) / f[1], 1.0 + 4.0, 0.02);
 }
 
+// one that needs a compute has it in each step, also where no output asks for it
+SERIAL_TEST(Variables, OfAComputeThatIsTalliedInSomeSteps)
+{
+  Scene run(plane("si", "f f", "0 8 0 8", 1, 0.3) + "fix grid all mpm 1.0\n" +
+            "region body block 1 7 1 7 INF INF\ncreate_points 1 region body ppc 2\n" +
+            "fix m all mpm/material density 2.0 linear 1e5 0.3\nregion top plane 0 7 0 0 -1 0\n"
+            "variable p equal 3+0*c_thermo_pe\nthermo 100\n"
+            "fix load all mpm/traction region top pressure v_p\ntimestep 1e-6\nrun 3\n");
+  EXPECT_NEAR(run.fix_vector("load", 7)[1], -18.0, 1e-8);
+}
+
 TEST(Bar, RanksAndRestart)
 {
   for (const char *surface :

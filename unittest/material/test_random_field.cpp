@@ -452,6 +452,17 @@ TEST_F(Random, FixAndRestart)
   }
 }
 
+// the stiffest point limits the time step: its modulus is the last variable of a point
+TEST_F(Random, LimitOfTheStep)
+{
+  Scene run(MPM_TEST::space("si", "f f f", "0 10 0 10 0 10", 1, 0.3) +
+            MPM_TEST::body("block 1 9 1 9 1 9",
+                           "density 2000 linear 1e7 0.3 random E lognormal 0.3 2 1") +
+            "fix dt all mpm/dt 1.0 every 1\ncompute c all mpm/atom wavespeed\n"
+            "compute most all reduce max c_c\nthermo_style custom step c_most\nrun 2\n");
+  EXPECT_NEAR(run.lmp->update->dt * run.evaluate("c_most"), 1.0, 1e-12);
+}
+
 // parameters of all kinds, each point with its own: temperature, stress of a term, mass
 TEST_F(Random, FixWithEveryKindOfParameter)
 {

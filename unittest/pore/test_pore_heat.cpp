@@ -78,28 +78,44 @@ TEST(Heated, RanksAndRestart)
   expect_continues(scene, variables);
 }
 
-// a dry or tight wall between two soils: nodes of a thin one belong to both
+/** A wall that does not conduct, or is dry, of this half width between two soils. */
+static std::string leaking(bool heat, double a)
+{
+  return plane("si", "f p", "-1 1 0 0.4", 2, 0.03) +
+      strprintf("region left block INF %g INF INF INF INF\n", -a) +
+      strprintf("region right block %g INF INF INF INF INF\n", a) +
+      strprintf("region wall block %g %g INF INF INF INF\n", -a, a) +
+      "create_points 1 region left spacing 0.05\ncreate_points 1 region right spacing 0.05\n"
+      "create_points 2 region wall spacing 0.05\ngroup soil type 1\ngroup dry type 2\n"
+      "fix grid all mpm 0.1\nfix m soil mpm/material density 2000 linear 1e7 0.3" +
+      (heat ? " thermal conducting 1000 293 2\nfix heat all mpm/heat\n"
+            : "\nfix water all mpm/pore 2.2e7 1000 1 soil m 0.4 constant 1e-7\n") +
+      "fix b dry mpm/material density 2000 linear 1e7 0.3\ntimestep 1e-6\nrun 1\n";
+}
+
+// nodes of a thin wall belong to both soils
 TEST(Wall, LeaksAreTold)
 {
   for (const bool heat : {false, true})
-    for (const double cells : {1.0, 2.0, 3.0}) {
-      const double a = 0.05 * cells;
-      EXPECT_EQ(
-          times_said(
-              plane("si", "f p", "-1 1 0 0.4", 2, 0.03) +
-                  strprintf("region left block INF %g INF INF INF INF\n", -a) +
-                  strprintf("region right block %g INF INF INF INF INF\n", a) +
-                  strprintf("region wall block %g %g INF INF INF INF\n", -a, a) +
-                  "create_points 1 region left spacing 0.05\n"
-                  "create_points 1 region right spacing 0.05\n"
-                  "create_points 2 region wall spacing 0.05\ngroup soil type 1\ngroup dry type 2\n"
-                  "fix grid all mpm 0.1\nfix m soil mpm/material density 2000 linear 1e7 0.3" +
-                  (heat ? " thermal conducting 1000 293 2\nfix heat all mpm/heat\n"
-                        : "\nfix water all mpm/pore 2.2e7 1000 1 soil m 0.4 constant 1e-7\n") +
-                  "fix b dry mpm/material density 2000 linear 1e7 0.3\ntimestep 1e-6\nrun 1\n",
-              heat ? "so thin that heat leaks through it" : "so thin that water leaks through it"),
-          cells < 3.0 ? 1 : 0);
-    }
+    for (const double cells : {1.0, 2.0, 3.0})
+      EXPECT_EQ(times_said(leaking(heat, 0.05 * cells),
+                           heat ? "so thin that heat leaks through it"
+                                : "so thin that water leaks through it"),
+                cells < 3.0 ? 1 : 0);
+}
+
+// and where they are: in the wall, the lowest of them along x, y, and z
+TEST(Wall, PlaceOfALeak)
+{
+  const auto said = lines_that_say(leaking(true, 0.05), "so thin that heat leaks through it");
+  ASSERT_EQ(said.size(), 1u);
+  double x[3] = {1.0, 1.0, 1.0};
+  const auto at = said[0].find("one of them at ");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(sscanf(said[0].c_str() + at, "one of them at %lg %lg %lg", &x[0], &x[1], &x[2]), 3);
+  EXPECT_LT(std::fabs(x[0]), 0.051);
+  EXPECT_NEAR(x[1], 0.0, 1e-12);
+  EXPECT_EQ(x[2], 0.0);
 }
 
 SERIAL_TEST(BadInput, IsRefused)

@@ -398,6 +398,20 @@ SERIAL_TEST(Surface, FillsDrySoil)
   }
 }
 
+// soil that dries to a suction outside: through any face alike
+SERIAL_TEST(Surface, DriesThroughAnyFace)
+{
+  std::vector<double> went;
+  for (const char *face : {"xlo", "xhi"}) {
+    Scene run(replaced(absorbs(10, 1e6, 0.02),
+                       {{"initial -98100", "initial -3000"},
+                        {"xlo pressure 0", std::string(face) + " pressure -30000"}}));
+    went.push_back(measured(face, run.fix("water")->compute_scalar()));
+  }
+  EXPECT_LT(went[0], 0.0);
+  EXPECT_NEAR(went[1] / went[0], 1.0, 1e-9);
+}
+
 // pressures that jump where the last pores fill are told, and too stiff water is refused
 SERIAL_TEST(Surface, StiffWater)
 {

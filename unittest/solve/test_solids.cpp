@@ -5,6 +5,7 @@
 
 // Multigrid for the stiffness of B-splines: symmetry, exact solutions, iterations for any size.
 
+#include "long_case.h"
 #include "solid_scenes.h"
 #include "thread_ranks.h"
 

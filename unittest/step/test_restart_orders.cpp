@@ -197,6 +197,18 @@ TEST_P(RestartChanges, AreRightOrNoticed)
   }
 }
 
+// also of a single point, whichever it is
+SERIAL_TEST(RestartChanges, OfAnyPointAreNoticed)
+{
+  const auto run = basic();
+  for (int id = 1; id <= 28; id++)
+    EXPECT_THAT(
+        run.go_on("",
+                  all_fixes() + strprintf("group single id %d\nvelocity single set 0.7 0 0\n", id))
+            .warnings,
+        ContainsRegex("velocities of points are not those of the restart file"));
+}
+
 // the time step of the file goes on only with the same options
 TEST(RestartOrders, OtherTimeStepIsSetAtOnce)
 {

@@ -719,12 +719,16 @@ TEST_P(Tables, FarShapesAreForgotten)
       memset(b.get(), 0, sizeof(Batch));
       b->n = n;
       const double stretches[] = {0.3, 1.0, 2.5}, shears[] = {0.0, 99.0, -101.0, 1.0e9};
+      const auto sheared = [dim](int p) {    // any that is not on the diagonal
+        constexpr int of_space[] = {6, 1, 2, 3, 5, 7}, of_plane[] = {3, 1};
+        return dim == 3 ? of_space[p % 6] : of_plane[p % 2];
+      };
       std::vector<double> shear(n), size(n);
       for (int p = 0; p < n; p++) {
         shear[p] = shears[p % 4];
         size[p] = stretches[p % 3];
         for (int d = 0; d < 3; d++) b->F[4 * d][p] = d < dim ? size[p] : 7.0;
-        b->F[dim == 3 ? 6 : 3][p] = shear[p] * size[p];    // zx or yx
+        b->F[sheared(p)][p] = shear[p] * size[p];
         b->J[p] = pow(size[p], dim) * (dim == 3 ? 1.0 : 7.0);
       }
       const bool inverted = n > 8;

@@ -34,6 +34,14 @@ TEST(RegionCut, SolidsHaveTheirVolumeAndInertia)
   }
 }
 
+// far from the diagonal of the box
+TEST(RegionCut, OfABodyAtASide)
+{
+  const ScratchFile file("ball.stl", text_of(ball(1.0, 3)));
+  Scene run(box_of_3d + "region body mpm/mesh " + file.name + " 1.0 -2.5 2.1 0.3\n" + cut(0.1));
+  EXPECT_NEAR(Sum(run).volume, 4.1527408171, 1e-7);
+}
+
 TEST(RegionCut, OutsideOfASurface)
 {
   const ScratchFile file("ball.stl", text_of(ball(1.0, 3)));

@@ -11,6 +11,7 @@
 #include "math/matrix.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -21,46 +22,84 @@ namespace {
 constexpr int DIRECTIONS = 32;    // of waves along a surface; misses at most 2 % of the modulus
 constexpr int VOIGT[9] = {0, 3, 4, 3, 1, 5, 4, 5, 2};
 
-/** Elasticity of a point in its present state: the work of a small l = dF F^-1 on top of it is
- *  (dP F^T):l/2 with dP F^T = T:l - tau l^T. */
+/** n_1^2, n_1 n_2, n_2^2 of all directions. */
+std::array<std::array<double, 3>, DIRECTIONS> directions()
+{
+  std::array<std::array<double, 3>, DIRECTIONS> list;
+  for (int k = 0; k < DIRECTIONS; k++) {
+    const double c = cos(M_PI * k / DIRECTIONS), s = sin(M_PI * k / DIRECTIONS);
+    list[k] = {c * c, c * s, s * s};
+  }
+  return list;
+}
+
+/** Elasticity of a body in its plane, and of the material across it. The work of a small
+ *  l = dF F^-1 on top of the present state is (dP F^T):l/2 with dP F^T = T:l - tau l^T. */
 struct Elasticity {
-  double T[9][9], tau[9];
+  // of l = e_a e_b for the axes 11 12 21 22 along the body, and last of the stretch across it
+  double M[5][5], tau[2][2];
+  double across;    ///< rho_0 c^2 of a wave across the body
 
-  Elasticity(const Tangent &t, const Batch &b, int p)
+  Elasticity(const Tangent &t, const Batch &b, int p, const double (*axis)[3], int along, int last)
   {
+    double T[9][9], stress[9], l[5][9] = {};
     for (int k = 0; k < 9; k++) {
-      tau[k] = b.J[p] * b.stress[VOIGT[k]][p];
-      for (int l = 0; l < 9; l++) T[k][l] = t.stress[VOIGT[k]][l][p];
+      stress[k] = b.J[p] * b.stress[VOIGT[k]][p];
+      for (int c = 0; c < 9; c++) T[k][c] = t.stress[VOIGT[k]][c][p];
     }
-  }
-
-  /** Leaves out the stretch l = X that keeps T:X free of stress. */
-  void release(const double *X)
-  {
-    double of_X[9] = {}, on_X[9] = {}, both = 0.0, most = 0.0;
-    for (int k = 0; k < 9; k++)
-      for (int l = 0; l < 9; l++) {
-        of_X[k] += T[k][l] * X[l];
-        on_X[l] += X[k] * T[k][l];
-        both += X[k] * T[k][l] * X[l];
-        most = std::max(most, std::fabs(T[k][l]));
+    for (int k = 0; k < 9; k++) {
+      for (int m = 0; m < 4; m++)
+        if (m == 0 || along == 2) l[m][k] = axis[m / 2][k / 3] * axis[m % 2][k % 3];
+      for (int a = along; a < last; a++) l[4][k] += axis[a][k / 3] * axis[a][k % 3];
+    }
+    for (int n = 0; n < 5; n++) {
+      double change[9] = {};
+      for (int k = 0; k < 9; k++)
+        for (int c = 0; c < 9; c++) change[k] += T[k][c] * l[n][c];
+      for (int m = 0; m < 5; m++) {
+        M[m][n] = 0.0;
+        for (int k = 0; k < 9; k++) M[m][n] += l[m][k] * change[k];
       }
-    if (!(both > 1.0e-12 * most)) return;    // what bears nothing across
-    for (int k = 0; k < 9; k++)
-      for (int l = 0; l < 9; l++) T[k][l] -= of_X[k] * on_X[l] / both;
+    }
+    for (int m = 0; m < 4; m++) {
+      tau[m / 2][m % 2] = 0.0;
+      for (int k = 0; k < 9; k++) tau[m / 2][m % 2] += l[m][k] * stress[k];
+    }
+    across = 0.0;
+    const double *const n = axis[along];
+    for (int k = 0; k < 9; k++) {
+      double change = -stress[k];
+      for (int c = 0; c < 9; c++) change += T[k][c] * n[c / 3] * n[c % 3];
+      across += n[k / 3] * n[k % 3] * change;
+    }
   }
 
-  /** rho_0 c^2 of a wave along n that moves points along m, as a bilinear form in m. */
-  double modulus(const double *n, const double *m, const double *other) const
+  /** Lets the body stretch across so that no stress acts there. */
+  void release()
   {
-    double sum = 0.0, along = 0.0;
-    for (int k = 0; k < 9; k++) {
-      double stress = 0.0;
-      for (int l = 0; l < 9; l++) stress += T[k][l] * other[l / 3] * n[l % 3];
-      sum += m[k / 3] * n[k % 3] * stress;
-      along += m[k / 3] * tau[k] * n[k % 3];
-    }
-    return sum - along * dot(n, other);
+    double most = 0.0;
+    for (const auto &row : M)
+      for (const double value : row) most = std::max(most, std::fabs(value));
+    if (!(M[4][4] > 1.0e-12 * most)) return;    // what bears nothing across
+    for (int m = 0; m < 4; m++)
+      for (int n = 0; n < 4; n++) M[m][n] -= M[m][4] * M[4][n] / M[4][4];
+  }
+
+  /** rho_0 c^2 of waves along n = (n_1, n_2) that move points along axes a and b: a form of n_1^2,
+   *  n_1 n_2, n_2^2 for ab = 11 22 12. */
+  void waves(double (*form)[3]) const
+  {
+    const auto entry = [this](int a, int i, int b, int j) {
+      return M[2 * a + i][2 * b + j] - (i == b ? tau[a][j] : 0.0);
+    };
+    for (int k = 0; k < 3; k++)
+      for (const bool turned : {false, true}) {
+        const int a = k == 2 ? turned : k, b = k == 2 ? !turned : k;
+        double *const f = form[k];
+        f[0] = 0.5 * entry(a, 0, b, 0) + (turned ? f[0] : 0.0);
+        f[1] = 0.5 * (entry(a, 0, b, 1) + entry(a, 1, b, 0)) + (turned ? f[1] : 0.0);
+        f[2] = 0.5 * entry(a, 1, b, 1) + (turned ? f[2] : 0.0);
+      }
   }
 };
 
@@ -93,33 +132,27 @@ void PlaneStress::find_directions(const double *motion, double (*axis)[3]) const
 double PlaneStress::largest_share(const Tangent &t, const Batch &b, int p,
                                   const double *motion) const
 {
-  double axis[3][3], X[9] = {};
+  double axis[3][3];
   find_directions(motion, axis);
-  for (int a = along; a < last_axis(); a++)
-    for (int k = 0; k < 9; k++) X[k] += axis[a][k / 3] * axis[a][k % 3];
-  Elasticity bulk(t, b, p), body = bulk;
-  body.release(X);
+  const Elasticity bulk(t, b, p, axis, along, last_axis());
+  Elasticity body = bulk;
+  body.release();
 
-  double of_bulk = 0.0, of_body = 0.0;
-  for (int a = along; a < last_axis(); a++)
-    of_bulk = std::max(of_bulk, bulk.modulus(axis[a], axis[a], axis[a]));
-  const int directions = along == 1 ? 1 : DIRECTIONS;
-  for (int k = 0; k < directions; k++) {
-    const double c = cos(M_PI * k / directions), s = sin(M_PI * k / directions);
-    double n[3], side[3];
-    for (int d = 0; d < 3; d++) {
-      n[d] = c * axis[0][d] + s * axis[1][d];
-      side[d] = c * axis[1][d] - s * axis[0][d];
-    }
-    of_bulk = std::max(of_bulk, bulk.modulus(n, n, n));
-    double largest = body.modulus(n, n, n);
-    if (along == 2) {
-      const double other = body.modulus(n, side, side), both = body.modulus(n, n, side);
-      largest = 0.5 * (largest + other) + hypot(0.5 * (largest - other), both);
-    }
-    double pull = 0.0;    // as of a string
-    for (int i = 0; i < 9; i++) pull += n[i / 3] * bulk.tau[i] * n[i % 3];
-    of_body = std::max(of_body, std::max(largest, pull));
+  static const auto list = directions();
+  double in_bulk[3][3], in_body[3][3], of_bulk = bulk.across, of_body = 0.0;
+  bulk.waves(in_bulk);
+  body.waves(in_body);
+  const double tau[3] = {bulk.tau[0][0], 2.0 * bulk.tau[0][1], bulk.tau[1][1]};
+  for (int k = 0; k < (along == 1 ? 1 : DIRECTIONS); k++) {
+    const double *const n = list[k].data();
+    of_bulk = std::max(of_bulk,
+                       n[0] * dot(in_bulk[0], n) + n[2] * dot(in_bulk[1], n) +
+                           2.0 * n[1] * dot(in_bulk[2], n));
+    const double one = dot(in_body[0], n), other = dot(in_body[1], n), both = dot(in_body[2], n),
+                 apart = 0.5 * (one - other);
+    // or its tension, as of a string
+    of_body =
+        std::max({of_body, 0.5 * (one + other) + sqrt(apart * apart + both * both), dot(tau, n)});
   }
   return of_bulk > 0.0 ? std::min(1.0, of_body / of_bulk) : 1.0;
 }
