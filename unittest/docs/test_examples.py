@@ -38,7 +38,7 @@ COARSER = {"taylor-bar": 2.0, "spall": 2.0, "cook-membrane": 2.0, "hypervelocity
 # steps, where a part of the run will do
 FEWER_STEPS = {"grains-on-block": 1000, "impact-on-crystal": 1000, "vortex": 110, "ring-on-block": 1200, "hopper": 1500,
                "boulders-in-debris": 600, "rockfall": 700, "tyre-on-gravel": 500, "settling": 600, "scratch": 400,
-               "friction-weld": 9000, "machining": 2500, "foam": 2000, "net": 2000, "tent": 1000, "folded-airbag": 500, "microstructure": 10, "hare": 400, "quench": 1000, "casting": 1000,
+               "friction-weld": 9000, "machining": 2500, "foam": 2000, "net": 2000, "tent": 1000, "folded-airbag": 15000, "microstructure": 10, "hare": 400, "quench": 1000, "casting": 1000,
                "pouring-honey": 400, "drop": 300, "rayleigh-taylor": 220, "extruder": 8000, "elastic-gate": 26500, "elastic-plate": 4600}    # until the last time of PUBLISHED
 
 # the same with two processes, where it is less than a third of these
@@ -55,7 +55,8 @@ BUILT_FIRST = ["own-material", "own-physics"]
 # what LAMMPS says of every hybrid style, and of what is set here before each run
 ALLOWED = ["Per-atom field rmass is used in multiple sub-styles", "previous thermo_modify settings will be lost",
            "The surface of file hare.obj is leaky",
-           "Fix mpm W: inside of its bodies, the volumes"]    # elastic-plate: 4 to 5 % in water that splashes over the plate
+           "Fix mpm W: inside of its bodies, the volumes",    # elastic-plate: 4 to 5 % in water that splashes over the plate
+           "Fix mpm T: points of type 2 have turned where friction acts"]    # tyre-on-gravel: next to its grooves steps of points do not matter
 
 # of the range of a column, besides the digits of the log
 PROCESSES_TOLERANCE = 1.0e-6   # the largest is 2e-8; collisions amplify round-off: a decision that hangs on it shows
@@ -64,7 +65,7 @@ LOG_TOLERANCE = 1.0e-6         # another machine, compiler or version: what sums
 # columns that amplify round-off: of the range, and why. A change of the density by 5e-15 of it makes the flow into the levee differ as
 # much as two processes do: by 1e-16 at 1.54 s, 1e-8 at 1.76 s, and 4e-4 at 1.98 s
 FILLING = "pores that are just full, or not, change their storage a thousandfold: which step it is hangs on round-off"
-FOLDS = "each contact of folds that open begins in the step that round-off decides: differences grow tenfold in 70 steps, to 1e-5 after 1000"
+FOLDS = "each contact of folds that open begins in the step that round-off decides"
 COIL = "what the solver leaves, 1e-7, grows from turn to turn"
 CHAOTIC = {"levee": {"v_in": (0.05, FILLING), "v_out": (0.05, FILLING), "v_toe": (0.05, FILLING), "v_crest": (0.05, FILLING),
                      "v_river": (1.0e-5, "it follows the time, and steps differ with the waves")},

@@ -415,26 +415,6 @@ PARAMETER_TEST(ElasticRestart, Continues, bool, Values(false, true))
   EXPECT_EQ(one[THERMOELASTIC], two[THERMOELASTIC]);
 }
 
-// solid metal before its melt: the waves of the solid, whose molten fraction is the last variable of
-// a point, limit the step
-SERIAL_TEST(Wave, OfTheSolidBesideItsMelt)
-{
-  const auto metal = [](const char *group, int T) {
-    return strprintf("fix m%s %s mpm/material density 1000 eos linear 1e6 strength j2 5e5 1e3 "
-                     "thermal conducting 1000 %d 1 melt 1000 1e4\n",
-                     group, group, T);
-  };
-  Scene run(
-      plane("si", "f f", "0 8 0 8", 2, 0.3) +
-      "fix grid all mpm 1.0\nregion cold block 1 4 2 6 INF INF\nregion hot block 4 7 2 6 INF INF\n"
-      "create_points 1 region cold ppc 2\ncreate_points 2 region hot ppc 2\n"
-      "group cold type 1\ngroup hot type 2\n" +
-      metal("cold", 300) + metal("hot", 2000) +
-      "fix heat all mpm/heat\nfix dt all mpm/dt 1.0 every 1\nrun 2\n");
-  const double c = std::sqrt((1e6 + 4.0 / 3.0 * 5e5) / 1000.0);
-  EXPECT_NEAR(run.lmp->update->dt * c, 1.0, 1e-3);
-}
-
 // P-waves of aluminum, without and with the heat of compression: 6197.82 and 6278.09 m/s. A bar
 // between rollers; energy goes from motion to stress and heat and back
 SERIAL_TEST(Wave, IsAdiabatic)

@@ -469,7 +469,8 @@ std::array<double, 2> PlaneStress::elastic_constants() const
   return {mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu), 0.5 * lambda / (lambda + mu)};
 }
 
-/** Does it come back from a large strain without stress? What yields or breaks does not. */
+/** Is it elastic, or does it come back from a large strain without stress, as what relaxes in time
+ *  does? What yields or breaks does not. */
 void PlaneStress::find_speed()
 {
   constexpr double LARGE[9] = {1.2, 0.0, 0.0, 0.0, 1.0 / 1.2, 0.0, 0.0, 0.0, 1.0};
@@ -479,7 +480,7 @@ void PlaneStress::find_speed()
   one.get(strained);
   one.go(LARGE, UNIT);
   one.get(back);
-  springs_back = norm(back) <= 0.01 * norm(strained);
+  springs_back = material.history().empty() || norm(back) <= 0.01 * norm(strained);
   if (axes) return;
   const auto [lambda, mu] = lame_constants(material);
   const double modulus = lambda + 2.0 * mu;

@@ -92,14 +92,13 @@ struct Elasticity {
     const auto entry = [this](int a, int i, int b, int j) {
       return M[2 * a + i][2 * b + j] - (i == b ? tau[a][j] : 0.0);
     };
-    for (int k = 0; k < 3; k++)
-      for (const bool turned : {false, true}) {
-        const int a = k == 2 ? turned : k, b = k == 2 ? !turned : k;
-        double *const f = form[k];
-        f[0] = 0.5 * entry(a, 0, b, 0) + (turned ? f[0] : 0.0);
-        f[1] = 0.5 * (entry(a, 0, b, 1) + entry(a, 1, b, 0)) + (turned ? f[1] : 0.0);
-        f[2] = 0.5 * entry(a, 1, b, 1) + (turned ? f[2] : 0.0);
-      }
+    for (int k = 0; k < 3; k++) {
+      const int a = k == 1, b = k > 0;
+      form[k][0] = 0.5 * (entry(a, 0, b, 0) + entry(b, 0, a, 0));
+      form[k][1] =
+          0.5 * (entry(a, 0, b, 1) + entry(a, 1, b, 0) + entry(b, 0, a, 1) + entry(b, 1, a, 0));
+      form[k][2] = 0.5 * (entry(a, 1, b, 1) + entry(b, 1, a, 1));
+    }
   }
 };
 
