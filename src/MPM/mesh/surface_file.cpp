@@ -8,6 +8,7 @@
 
 #include "mesh/surface_file.h"
 
+#include "mesh/terrain_file.h"
 #include "mesh/vector3.h"
 
 #include <cctype>
@@ -192,6 +193,7 @@ std::vector<Point> MPM_NS::read_surface(const std::string &bytes, const std::str
 {
   const std::string end = name.size() < 4 ? "" : lower_case(name.substr(name.size() - 4));
   if (bytes.empty()) fail(name, " is empty");
+  if (is_terrain(name)) return read_terrain(bytes, name);
   auto soup = end == ".obj" ? ObjReader(bytes, name).read() : read_stl(bytes, name);
   if (soup.empty()) fail(name, " has no triangles");
   return soup;

@@ -9,7 +9,7 @@
 #ifndef MPM_MESH_SURFACE_FILE_H
 #define MPM_MESH_SURFACE_FILE_H
 
-// Files with surfaces of triangles: STL and OBJ. Nothing here knows about LAMMPS.
+// Files with surfaces of triangles: STL, OBJ, and terrains. Nothing here knows about LAMMPS.
 
 #include <array>
 #include <string>
@@ -20,7 +20,7 @@ namespace MPM_NS {
 /** Reads the corners of triangles, three in a row for each, in the order of the file, from the
  *  bytes of the file. If the name ends in .obj, in upper or lower case, it is a Wavefront OBJ file,
  *  of which vertices and faces are read; its polygons must be convex and are divided into
- *  triangles. Any other file is an STL file, text or binary. Throws std::runtime_error, with the
+ *  triangles. Of a terrain, see read_terrain(). Any other file is an STL file, text or binary. Throws std::runtime_error, with the
  *  name in the message, if the file is not of this kind, is truncated, or contains invalid or
  *  infinite numbers. */
 std::vector<std::array<double, 3>> read_surface(const std::string &bytes, const std::string &name);

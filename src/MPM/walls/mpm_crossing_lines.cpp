@@ -194,10 +194,8 @@ bool MPMCrossingLines::find(const MPMWallNode &from_node, MPMCrossing &c)
     node[a] = first + from;
     place[a] = field.lattice.origin[a] + h * node[a];
     const int ahead = outward * (node[a] - last_inside);
-    if (ahead > 0 && wall.region->match(place[0], place[1], place[2])) return false;
-    if (!is_outside && ahead < 0 &&
-        !(wall.region->match(place[0], place[1], place[2]) && along(place)))
-      return false;
+    if (ahead > 0 && wall.surface->has(place)) return false;
+    if (!is_outside && ahead < 0 && !(wall.surface->has(place) && along(place))) return false;
     const int at_place = node[a];
     node[a] = field.lattice.wrap(a, node[a]);
     // regions have no periodic images: this node would have material at the other end of the box
@@ -222,10 +220,10 @@ bool MPMCrossingLines::find(const MPMWallNode &from_node, MPMCrossing &c)
   double at[3] = {x[0], x[1], x[2]};
   for (const double deep : {RESOLVED, 2.0, FELT_THROUGH}) {
     at[a] = surface_x - outward * deep * h;
-    if (wall.region->match(at[0], at[1], at[2])) continue;
+    if (wall.surface->has(at)) continue;
     if (deep == RESOLVED) {
       at[a] = surface_x - outward * 0.05 * h;    // a line along the edge of the region is not in it
-      c.in_plate = wall.region->match(at[0], at[1], at[2]);
+      c.in_plate = wall.surface->has(at);
     }
     if (!is_outside) c.front = MPMCrossing::THIN_PLACE;
   }
@@ -239,7 +237,7 @@ bool MPMCrossingLines::is_narrow(const MPMWallNode &node, const double *x) const
   const double h = field.lattice.h, *const n = node.normal;
   const int dim = field.lattice.dim;
   const auto match = [&](const double *x) {
-    return wall.region->match(x[0], x[1], x[2]);
+    return wall.surface->has(x);
   };
   double middle[3];
   for (int d = 0; d < 3; d++) middle[d] = x[d] - (node.distance + RESOLVED * h) * n[d];

@@ -572,9 +572,9 @@ double MPMBoxFace::position(const Domain &box) const
   return inward > 0 ? box.boxlo[axis] : box.boxhi[axis];
 }
 
-std::function<double(const double *)> MPMBoxFace::distance(const Domain &box) const
+MPMDistanceFrom MPMBoxFace::distance(const Domain &box) const
 {
-  return [a = axis, sign = inward, place = position(box)](const double *x) {
+  return [a = axis, sign = inward, place = position(box)](const double *x, double) {
     return sign * (x[a] - place);
   };
 }

@@ -14,7 +14,6 @@
 #include "walls/mpm_wall_gap.h"
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -60,7 +59,7 @@ struct MPMBoxFace {
   /** Position on its axis. */
   double position(const Domain &) const;
   /** Distance of a place from the face, positive in the box. */
-  std::function<double(const double *)> distance(const Domain &) const;
+  MPMDistanceFrom distance(const Domain &) const;
   /** Adds the line or column through a node, which is the first one of a line, or in the plane. */
   void add_line(const MPMField &, const int *index);
 

@@ -107,10 +107,30 @@ void MPMRegionSurface::each_contact(const double *x, double far, bool inside, co
   region->interior = interior;
 }
 
-double MPMRegionSurface::find(const double *x, double far, double h) const
+bool MPMRegionSurface::find_in_cells(const double *x, double far, double &distance,
+                                     double *gradient) const
+{
+  return cells && mesh->distance_in_cells(*cells, x, far, distance, gradient);
+}
+
+void MPMRegionSurface::use_cells(double size)
+{
+  if (mesh) cells = &mesh->cells_of_size(size);
+  for (auto &part : parts) part.use_cells(size);
+}
+
+bool MPMRegionSurface::has(const double *x) const
+{
+  constexpr double SIGN = 1.0e-300;    // only the sign is needed
+  double d;
+  if (!find_in_cells(x, SIGN, d, nullptr)) return match(x);
+  return region->interior ? d <= 0.0 : d < 0.0;
+}
+
+double MPMRegionSurface::find(const double *x, double far, bool in_cells) const
 {
   double d, up;
-  if (h > 0.0 && mesh && mesh->distance_by_cells(x, far, h, 0.25 * h, d)) return d;
+  if (in_cells && find_in_cells(x, far, d, nullptr)) return d;
   if (mesh) {
     d = mesh->distance(x, far, up);
     // in 2d the section has another closest point
@@ -123,7 +143,7 @@ double MPMRegionSurface::find(const double *x, double far, double h) const
       d = std::min(d, r);
     });
   } else if ((inside == (region->interior != 0)) != is_union) {
-    for (const auto &part : parts) d = std::min(d, fabs(part.find(x, far, h)));
+    for (const auto &part : parts) d = std::min(d, fabs(part.find(x, far, in_cells)));
   } else {
     find_places(x, far);
     for (const auto &place : places) d = std::min(d, place.distance);
@@ -186,15 +206,16 @@ bool MPMRegionSurface::find_normal_at_once(const double *x, double far, double s
 
 void MPMRegionSurface::normal(const double *x, double far, double step, double *normal) const
 {
-  if (find_normal_at_once(x, far, step, normal)) return;
-  const double here = distance(x, far);
+  double here;
+  if (find_in_cells(x, far, here, normal) || find_normal_at_once(x, far, step, normal)) return;
+  here = find(x, far, false);
   MathExtra::zero3(normal);
   for (int d = 0; d < dim; d++) {
     double y[3] = {x[0], x[1], x[2]};
     y[d] = x[d] + step;
-    const double up = distance(y, far);
+    const double up = find(y, far, false);
     y[d] = x[d] - step;
-    const double down = distance(y, far);
+    const double down = find(y, far, false);
     const bool knows_up = fabs(up) < far, knows_down = fabs(down) < far;
     if (knows_up && knows_down)
       normal[d] = up - down;

@@ -14,6 +14,10 @@
 #include <array>
 #include <vector>
 
+namespace MPM_NS {
+class SurfaceCells;
+}
+
 namespace LAMMPS_NS {
 class RegMPMMesh;
 class Region;
@@ -30,12 +34,14 @@ class MPMRegionSurface {
   /** Signed distance of x, negative in the region. Returns far or -far if it is greater, or not
    *  known. It is not known in a union and outside of an intersection if the nearest surface can be
    *  an edge between two parts. */
-  double distance(const double *x, double far) const { return find(x, far, 0.0); }
+  double distance(const double *x, double far) const { return find(x, far, true); }
 
-  /** Distance for material in front of the surface, where it is needed less exactly. Beyond a node
-   *  spacing h, errors are less than 0.03 h^2/R for a surface of radius R. This is much faster for
-   *  a mesh. */
-  double gap(const double *x, double far, double h) const { return find(x, far, h); }
+  /** Distances and normals of a mesh come from SurfaceCells of this size from now on, where these
+   *  know them. This is much faster, and wrong by at most 0.01 of the size. */
+  void use_cells(double size);
+
+  /** Is x in the region, or on its surface? It agrees with the sign of the distance. */
+  bool has(const double *x) const;
 
   /** Unit normal out of the region, the gradient of the distance. If necessary, it is found from
    *  differences with this step (one-sided where the distance is not known). Zero at centers and
@@ -54,12 +60,14 @@ class MPMRegionSurface {
   RegMPMMesh *mesh;
   int dim;
   bool is_cone, is_union;
+  MPM_NS::SurfaceCells *cells = nullptr;    // of the mesh, if they are in use
   std::vector<int> left_out;    // ends of a cone that are left out, one after the other; -1: none
   std::vector<MPMRegionSurface> parts;    // of unions and intersections
   mutable std::vector<Place> places;
 
   bool match(const double *x) const;
-  double find(const double *x, double far, double h) const;
+  double find(const double *x, double far, bool in_cells) const;
+  bool find_in_cells(const double *x, double far, double &distance, double *gradient) const;
   bool find_normal_at_once(const double *x, double far, double step, double *normal) const;
   void find_sharp_end();
   void find_places(const double *x, double far) const;

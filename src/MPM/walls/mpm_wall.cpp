@@ -26,6 +26,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+static constexpr double CELL = 0.5;    // of distances from a mesh [node spacings]
+
 void MPMWall::init()
 {
   in_implicit_steps = !modify->get_fix_by_style("^mpm/implicit$").empty();
@@ -45,6 +47,9 @@ void MPMWall::init_region()
     error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/boundary does not exist",
                region_id);
   surface = std::make_unique<MPMRegionSurface>(region, domain->dimension);
+  double h = fields[0]->lattice.h;
+  for (const auto *field : fields) h = std::min(h, field->lattice.h);
+  surface->use_cells(CELL * h);
   if (surface->is_open())
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/boundary cannot use region {}: open faces have no inside", region_id);
@@ -214,19 +219,17 @@ void MPMWall::normal(const MPMField &field, const double *x, double *n) const
   surface->normal(x, FAR * h, NORMAL_STEP * h, n);
 }
 
-std::function<double(const double *)> MPMWall::distance_from_region(const MPMField &field,
-                                                                    double dt, double more) const
+MPMDistanceFrom MPMWall::distance_from_region(double dt) const
 {
-  const double h = field.lattice.h, far = MPMWallGap::farthest(field, more);
   if (!region_moves())
-    return [this, far, h](const double *x) {
-      return surface->gap(x, far, h);
+    return [this](const double *x, double cutoff) {
+      return surface->distance(x, cutoff);
     };
-  return [this, far, h, dt](const double *x) {
+  return [this, dt](const double *x, double cutoff) {
     double y[3], v[3];
     motion.velocity(x, v);
     for (int d = 0; d < 3; d++) y[d] = x[d] + dt * v[d];
-    return surface->gap(y, far, h);
+    return surface->distance(y, cutoff);
   };
 }
 

@@ -14,9 +14,9 @@
 #include "lattice/grid.h"
 #include "pointers.h"
 #include "walls/mpm_region_surface.h"
+#include "walls/mpm_wall_gap.h"
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -169,11 +169,9 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
   double way_since(const double *then) const;
   /** Unit normal of the region at x; zero: not known. */
   void normal(const MPMField &, const double *x, double *n) const;
-  /** The distance from the region for a position at the start of the step, up to what nodes at the
-   *  wall see and more (node spacings). The region is already where it will be at the end, so the
-   *  position is moved with it. */
-  std::function<double(const double *)> distance_from_region(const MPMField &, double dt,
-                                                             double more = 0.0) const;
+  /** The distance from the region for a position at the start of the step. The region is already
+   *  where it will be at the end, so the position is moved with it. */
+  MPMDistanceFrom distance_from_region(double dt) const;
 
  private:
   bigint motion_step = -1;    // step for which the motion of the wall is known

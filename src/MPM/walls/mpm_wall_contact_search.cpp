@@ -81,8 +81,7 @@ void MPMWallContactSearch::map_region(MPMWallNodes &list, double dt)
   for (const auto &node : list.nodes) near[node.node / NODES_PER_BLOCK] = 1;
   list.crossings.mark_blocks(near);
   if (!wall.region_moves()) wall.region->prematch();
-  gap.map(field, near, wall.region->nregion == 1, 2.45 * seen,
-          wall.distance_from_region(field, dt));
+  gap.map(field, near, wall.region->nregion == 1, 2.45 * seen, wall.distance_from_region(dt));
 }
 
 /** Lines of a region that moves and holds act as soon as nodes on both sides of the surface see
@@ -153,13 +152,11 @@ MPMWallContactSearch::Key MPMWallContactSearch::key_of(int axis, bool up, const 
 }
 
 /** Distance from a face, or from the region (face null). */
-MPMWallContactSearch::Distance MPMWallContactSearch::distance_from(MPMWallNodes &list,
-                                                                   const MPMBoxFace *face,
-                                                                   double dt, double more) const
+MPMDistanceFrom MPMWallContactSearch::distance_from(const MPMBoxFace *face, double dt) const
 {
   if (!face) {
     if (!wall.region_moves()) wall.region->prematch();
-    return wall.distance_from_region(list.field, dt, more);
+    return wall.distance_from_region(dt);
   }
   return face->distance(*domain);
 }
@@ -324,22 +321,25 @@ void MPMWallContactSearch::find_approaches(MPMWallNodes &list, double dt)
 {
   MPMField &field = list.field;
   const double seen = 0.5 * (stencil_order(field.options.shape) + 1),
-               more = MPMWall::COMES_FROM + MORE + seen;
+               more = MPMWall::COMES_FROM + MORE + seen, far = MPMWallGap::farthest(field, more);
   list.approaches.clear();
   std::vector<MPMBoxFace *> faces;
   for (auto &face : list.mirrors.faces) faces.push_back(&face);
   if (wall.region) faces.assign(1, nullptr);
   for (MPMBoxFace *const face : faces) {
-    const Distance away = distance_from(list, face, dt, more);
+    const MPMDistanceFrom away = distance_from(face, dt);
+    const Distance away_if_near = [&](const double *x) {
+      return away(x, far);
+    };
     std::vector<char> near;
-    Lines lines = lines_in_front(list, face, away, near);
+    Lines lines = lines_in_front(list, face, away_if_near, near);
     leave_out_acting(list, face, lines);
     gap.map(field, near, face || wall.region->nregion == 1,
             (face ? 2.0 : 2.45) * seen + MPMWall::COMES_FROM + MORE, away, more);
     for (const auto &[key, nearest] : lines) {
       MPMApproach found = {};
       double x[3];
-      if (!find_surface(list, key, nearest, away, x, found)) continue;
+      if (!find_surface(list, key, nearest, away_if_near, x, found)) continue;
       if (face)
         MathExtra::copy3(nearest.normal, found.normal);
       else

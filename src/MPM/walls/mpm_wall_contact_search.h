@@ -62,7 +62,7 @@ class MPMWallContactSearch : protected Pointers {
   MPMWallGap::Sums sums(const NodeLine &) const;
 
   static Key key_of(int axis, bool up, const int *index);
-  Distance distance_from(MPMWallNodes &, const MPMBoxFace *, double dt, double more) const;
+  MPMDistanceFrom distance_from(const MPMBoxFace *, double dt) const;
   Lines lines_in_front(const MPMWallNodes &, const MPMBoxFace *, const Distance &,
                        std::vector<char> &near) const;
   void leave_out_acting(MPMWallNodes &, MPMBoxFace *, Lines &) const;

@@ -50,7 +50,8 @@ static constexpr double NEAR = 0.25, BEHIND = 100.0;
 
 MPMContactDistance::MPMContactDistance(const MPMField &field, const double *positions,
                                        const double *weights, int n) :
-    sized(field.options.has_size())
+    sized(field.options.has_size()),
+    dim(field.lattice.dim)
 {
   const MPMStencil stencil(field);
   constexpr double origin = 16.0;    // of the wall, away from zero
@@ -80,9 +81,10 @@ MPMContactDistance::MPMContactDistance(const MPMField &field, const double *posi
   slope = (M(step) - M(0.0)) / step;
 }
 
-double MPMContactDistance::distance(double size2) const
+double MPMContactDistance::distance(double size) const
 {
   if (volume <= 0.0) return 0.0;
+  const double edge = dim == 3 ? std::cbrt(size) : std::sqrt(size), size2 = edge * edge;
   const double all = volume + (sized ? 0.0 : size2 / 24.0 * slope);
   return (moment + size2 / (sized ? 12.0 : 24.0) * at_wall) / std::max(all, 0.5 * volume);
 }
@@ -91,19 +93,19 @@ void MPMWallGap::Sums::add(double weight, const Sums &other)
 {
   volume += weight * other.volume;
   distance += weight * other.distance;
-  size2 += weight * other.size2;
+  size += weight * other.size;
 }
 
 bool MPMWallGap::Sums::touches(const MPMContactDistance &full, double near) const
 {
   return volume > 0.0 &&
-      distance <= (full.distance(size2 / volume) + std::max(near, TOLERANCE)) * volume;
+      distance <= (full.distance(size / volume) + std::max(near, TOLERANCE)) * volume;
 }
 
 double MPMWallGap::Sums::beyond(const MPMContactDistance &full) const
 {
   if (!(volume > 0.0)) return std::numeric_limits<double>::infinity();
-  return distance / volume - full.distance(size2 / volume);
+  return distance / volume - full.distance(size / volume);
 }
 
 /** Of the middle of a block whose points are out of reach. */
@@ -115,10 +117,10 @@ double MPMWallGap::farthest(const MPMField &field, double more)
 }
 
 /** Points that no node at the wall sees are left out, most of them by the distance of the middle of
- *  their block: the distance of another place is less by no more than their distance from each
- *  other. The domains of points with a size can reach far. */
+ *  their cell: the distance of another place is less by no more than their distance from
+ *  each other. The domains of points with a size can reach far. */
 void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth, double reach,
-                     const std::function<double(const double *)> &away, double more)
+                     const MPMDistanceFrom &away, double more)
 {
   constexpr int CHUNK = 8;
   const auto &pic = field.pic;
@@ -126,8 +128,9 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   const auto nmax = (std::size_t) field.atom->nmax;
   const double h = lattice.h;
   const bool sized = field.options.has_size(), cubes = lattice.dim == 3;
-  const double limit = FARTHEST + more;
-  const double far = farthest(field, more), seen_from = std::min(reach, limit) + 0.01;
+  const double limit = FARTHEST + more, per_h = 1.0 / h, per_cell = 1.0 / lattice.cell_volume(),
+               most_near = cubes ? NEAR * NEAR * NEAR : NEAR * NEAR;
+  const double seen_from = std::min(reach, limit) + 0.01, cutoff = (limit + 1.0) * h;
   if (volumes.size() < nmax) {
     volumes.resize(nmax);
     values.resize(3 * nmax);
@@ -136,19 +139,29 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   const TransferStep s = field.step_data(0.0);
   const MPMRows x = field.frame->places();
 
-  // no place in this ball is seen
-  double center[3] = {0.0, 0.0, 0.0}, free = -1.0;
-  const auto look = [&](const double *place) {
-    const double d = away(place);
-    if (!smooth || d - seen_from * h <= free) return d;
-    MathExtra::copy3(place, center);
-    free = d - seen_from * h;
-    return d;
-  };
+  // the middle of a cell tells of the points in it; cells are counted from one before the block
+  enum Sight : char { NOT_KNOWN, IN_SIGHT, OUT_OF_SIGHT };
+  const int side = field.grid.side, count = side + 2, layers = cubes ? count : 1;
+  const double radius = 0.5 * std::sqrt((double) lattice.dim) * h;
+  const bool looks = smooth && !sized;
+  std::vector<char> cells(looks ? count * count * layers : 0);
+  double corner[3] = {0.0, 0.0, 0.0};
   const auto out_of_sight = [&](const double *place) {
-    double r[3];
-    MathExtra::sub3(place, center, r);
-    return free > 0.0 && MathExtra::lensq3(r) < free * free;
+    if (!looks) return false;
+    const double at[3] = {(place[0] - corner[0]) * per_h, (place[1] - corner[1]) * per_h,
+                          cubes ? (place[2] - corner[2]) * per_h : 0.5};
+    const int k[3] = {(int) at[0], (int) at[1], (int) at[2]};
+    if (!(at[0] >= 0.0 && at[1] >= 0.0 && at[2] >= 0.0) || k[0] >= count || k[1] >= count ||
+        k[2] >= layers)
+      return false;
+    char &sight = cells[(k[0] * count + k[1]) * layers + k[2]];
+    if (sight == NOT_KNOWN) {
+      double middle[3];
+      for (int d = 0; d < 3; d++) middle[d] = corner[d] + (k[d] + 0.5) * h;
+      if (!cubes) middle[2] = 0.0;
+      sight = away(middle, cutoff) - radius >= seen_from * h ? OUT_OF_SIGHT : IN_SIGHT;
+    }
+    return sight == OUT_OF_SIGHT;
   };
 
   points_to(nodes, field, pic, [&](const MPMPointMap::Run &run, const int *base, int *box) {
@@ -157,14 +170,11 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
           return slot >= 0 && near[slot];
         }))
       return;
-    free = -1.0;
-    if (smooth && !sized) {
-      double middle[3];
-      const int first[3] = {block.b[0] * field.grid.side, block.b[1] * field.grid.side,
-                            cubes ? block.b[2] * field.grid.side : 0};
-      lattice.node_position(first, middle);
-      for (int d = 0; d < lattice.dim; d++) middle[d] += 0.5 * field.grid.side * h;
-      if (std::fabs(look(middle)) >= far) return;
+    if (looks) {
+      const int first[3] = {block.b[0] * side - 1, block.b[1] * side - 1,
+                            cubes ? block.b[2] * side - 1 : 0};
+      lattice.node_position(first, corner);
+      std::fill(cells.begin(), cells.end(), (char) NOT_KNOWN);
     }
     for (int begin = run.first; begin < run.last; begin += CHUNK) {
       const int end = std::min(begin + CHUNK, run.last);
@@ -172,20 +182,22 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
       bool seen = sized;
       for (int i = begin; i < end; i++) {
         double &d = distance[i - begin];
-        d = !sized && out_of_sight(x[i]) ? limit : look(x[i]) / h;
+        d = out_of_sight(x[i]) ? limit : away(x[i], cutoff) * per_h;
         seen = seen || d < seen_from;
       }
       if (!seen) continue;
       for (int i = begin; i < end; i++) {
         const double d = distance[i - begin];
-        const double volume = r.vol0[i] * field.points->jacobian(i) / field.frame->circle(x[i][0]);
-        const double size = (cubes ? std::cbrt(volume) : sqrt(volume)) / h;
+        volumes[i] = r.vol0[i] * field.points->jacobian(i) / field.frame->circle(x[i][0]);
+        const double size = volumes[i] * per_cell;
         double *const value = &values[3 * (std::size_t) i];
-        volumes[i] = volume;
-        const double crossing = std::max(0.0, 1.0 - d / (NEAR * size));
-        value[0] = std::min(d, limit) - BEHIND * crossing * crossing;
-        value[1] = size * size;
+        value[0] = std::min(d, limit);
+        value[1] = size;
         value[2] = 0.0;    // in 2d there is no third one
+        if (d > 0.0 && d * d * (cubes ? d : 1.0) >= most_near * size) continue;
+        const double crossing =
+            std::max(0.0, 1.0 - d / (NEAR * (cubes ? std::cbrt(size) : std::sqrt(size))));
+        value[0] -= BEHIND * crossing * crossing;
       }
       pic.p2g_momentum(r, s, begin, end, base, field.map->tile, box);
     }

@@ -29,14 +29,18 @@ class MPMContactDistance {
   MPMContactDistance(const MPMField &, const double *positions, const double *weights, int n);
 
   /** Largest mean distance (weight M, in node spacings) of the points of material that touches the
-   *  wall. size2: mean square of the spacing of the points. */
-  double distance(double size2) const;
+   *  wall. size: mean volume of the points, in cells. */
+  double distance(double size) const;
 
  private:
   double volume = 0.0, moment = 0.0;    // integrals of M and of x M over x > 0
   double at_wall = 0.0, slope = 0.0;    // M and its derivative at the wall
   bool sized = false;                   // points have a size
+  int dim = 3;
 };
+
+/** Signed distance of the position x from something, or the cutoff if that is less. */
+using MPMDistanceFrom = std::function<double(const double *x, double cutoff)>;
 
 /** Sums over the points in front of a wall, at the nodes of a field. */
 class MPMWallGap {
@@ -44,7 +48,7 @@ class MPMWallGap {
   struct Sums {
     double volume = 0.0;      // sum of V N over the points
     double distance = 0.0;    // of V N times the distance from the wall, in node spacings
-    double size2 = 0.0;       // of V N times the square of the spacing of points, in node spacings
+    double size = 0.0;        // of V N times the volume of the point, in cells
 
     /** Adds other sums, times a weight. */
     void add(double weight, const Sums &);
@@ -57,12 +61,12 @@ class MPMWallGap {
   };
 
   /** Finds the sums at the nodes of the blocks [slot] that are marked in near (and may find
-   *  others). away(x): distance of a position from the wall, positive on the side of the material.
+   *  others). away: distance of a position from the wall, positive on the side of the material.
    *  smooth: the distance changes by no more than the position. reach: greatest distance that a
    *  node of the wall sees (node spacings). more: distance beyond the range of nodes at the wall up
    *  to which distances are needed (node spacings). Collective. */
   void map(MPMField &, const std::vector<char> &near, bool smooth, double reach,
-           const std::function<double(const double *)> &away, double more = 0.0);
+           const MPMDistanceFrom &away, double more = 0.0);
 
   /** Distances beyond this one are not needed. */
   static double farthest(const MPMField &, double more = 0.0);

@@ -17,7 +17,9 @@
 #include "walls/mpm_wall_reaction.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
@@ -91,6 +93,8 @@ void MPMWallNodes::list_region()
   const double radius = 0.5 * (grid.side - 1) * h * sqrt((double) dim);
   const double beyond = across ? h : MPMWall::ON_SURFACE * h;
   std::vector<MPMWallNode> outside;    // next to the surface
+  std::array<double, 16> groups;
+  const double near_enough = 0.51 * std::sqrt((double) dim) * h + std::max(next, taken);
 
   nodes.clear();
   if (!moves) region->prematch();
@@ -106,26 +110,45 @@ void MPMWallNodes::list_region()
       mid[d] = 0.5 * (first[d] + last[d]);
       if (box_known && (last[d] < lo[d] - beyond || first[d] > hi[d] + beyond)) near = false;
     }
+    double middle = 0.0;
     if (near && region->nregion == 1) {
-      const double distance = surface->distance(mid, far);
-      near = distance <= radius + h || distance >= far;
+      middle = surface->distance(mid, far);
+      near = middle <= radius + h || middle >= far;
     }
     if (!near) continue;
+    const bool deep = middle < -(radius + next) && middle > -far;
+    std::fill(groups.begin(), groups.end(), std::numeric_limits<double>::quiet_NaN());
 
     for (int n = 0; n < NODES_PER_BLOCK; n++) {
       if (grid.blocks[ib].alias >> n & 1) continue;
+      // in a step, masses are known; no line goes through a node deep inside
+      const bool idle = moves && !(grid.record(first_node + n)[3] > 0.0);
+      if (idle && (deep || !across)) continue;
       double x[3];
       grid.node_position(first_node + n, x);
+      // the middle of two nodes along each axis tells of nodes in front, which are not needed
+      if (region->nregion == 1) {
+        int group = 0, side = 1;
+        double center[3] = {0.0, 0.0, 0.0};
+        for (int d = 0; d < dim; d++, side *= grid.side / 2) {
+          const int k = (int) std::lround((x[d] - first[d]) / h) / 2;
+          group += side * k;
+          center[d] = first[d] + (2 * k + 0.5) * h;
+        }
+        double &ahead = groups[group];
+        if (std::isnan(ahead)) ahead = surface->distance(center, near_enough);
+        if (ahead >= near_enough) continue;
+      }
       MPMWallNode s = {first_node + n};
-      if (!region->match(x[0], x[1], x[2])) {
-        const double gap = surface->distance(x, next);
-        if (across && gap > MPMWall::ON_SURFACE * h && gap < next) {
+      const double gap = surface->distance(x, next);
+      if (idle && gap <= -next) continue;
+      if (gap > MPMWall::ON_SURFACE * h) {
+        if (across && gap < next) {
           s.distance = gap;
           outside.push_back(s);
         }
         if (gap >= taken) continue;
-        if (gap > MPMWall::ON_SURFACE * h && !wall.moves_and_holds)
-          s.share = cube(1.0 - cube(gap / taken));
+        if (!wall.moves_and_holds) s.share = cube(1.0 - cube(gap / taken));
       }
       if (wall.kind != MPMWall::STICK || !wall.moves_and_holds) wall.normal(field, x, s.normal);
       if (region->varshape || across) s.distance = surface->distance(x, far);
@@ -172,7 +195,7 @@ bool MPMWallNodes::find_face_ahead(const MPMWallNode &node, const double *u,
   field.grid.node_position(node.node, x);
   const auto is_inside = [&](double way) {
     for (int d = 0; d < 3; d++) at[d] = x[d] - deep * n[d] + way * u[d];
-    return wall.region->match(at[0], at[1], at[2]) != 0;
+    return wall.surface->has(at);
   };
   double inside = 0.0, outside = far;
   if (is_inside(outside) || !is_inside(inside)) return false;

@@ -427,15 +427,16 @@ void MPMWallTrial::act_on_approach(MPMWallReaction &reaction, MPMWallNodes &list
 /** Distances of points from the wall at the start of the step. */
 void MPMWallTrial::find_clearance(MPMWallNodes &list)
 {
-  std::vector<std::function<double(const double *)>> away;
+  const double far = MPMWallGap::farthest(*field);
+  std::vector<MPMDistanceFrom> away;
   if (wall.region && !wall.region_moves()) wall.region->prematch();
-  if (wall.region) away.push_back(wall.distance_from_region(*field, dt));
+  if (wall.region) away.push_back(wall.distance_from_region(dt));
   for (const auto &face : list.mirrors.faces) away.push_back(face.distance(*domain));
   clearance.resize(away.size() * atom->nmax);
   for (const auto &run : field->map->runs)
     for (bigint i = run.first; i < run.last; i++)
       for (std::size_t f = 0; f < away.size(); f++)
-        clearance[away.size() * i + f] = away[f](atom->x[i]);
+        clearance[away.size() * i + f] = away[f](atom->x[i], far);
 }
 
 /** Checks that no material that was in front of the wall, and was not found to touch it, is in the
@@ -456,7 +457,7 @@ void MPMWallTrial::check_arrival()
         if (!(before > 0.0)) continue;
         double depth;
         if (wall.region) {
-          depth = -wall.surface->gap(x, far, h);
+          depth = -wall.surface->distance(x, far);
         } else {
           const int a = faces[f].axis;
           depth =
@@ -496,11 +497,11 @@ bool MPMWallTrial::find_carried(MPMField &of, std::vector<double> &left)
   if (!wall.is_grip) return false;
   left.resize(atom->nmax, 1.0);
   const int dim = of.lattice.dim;
-  const double h = of.lattice.h;
-  const auto away = wall.distance_from_region(of, dt);
+  const double h = of.lattice.h, far = MPMWallGap::farthest(of);
+  const auto away = wall.distance_from_region(dt);
   for (const auto &run : of.map->runs)
     for (bigint i = run.first; i < run.last; i++) {
-      const double *const x = atom->x[i], distance = away(x), *const F = of.points->F[i];
+      const double *const x = atom->x[i], distance = away(x, far), *const F = of.points->F[i];
       if (distance > h) continue;
       double width = 0.0;
       if (distance > -h) {

@@ -15,7 +15,9 @@
 #include "error.h"
 #include "math_const.h"
 #include "math_extra.h"
+#include "mesh/surface_cells.h"
 #include "mesh/surface_mesh.h"
+#include "mesh/terrain_file.h"
 #include "table/regular_file.h"
 #include "utils.h"
 
@@ -106,6 +108,11 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   SurfaceOptions how;
   how.leaky = leaky = given.surface == given.LEAKY;
   how.open = given.surface == given.OPEN;
+  if (is_terrain(arg[2])) {
+    if (keywords.given("surface") && !how.open)
+      error->all(FLERR, 2, "Region mpm/mesh file {} has heights, whose surface is open", arg[2]);
+    how.open = true;
+  }
   if (keywords.given("turn")) {
     double axis[3] = {given.axis[0], given.axis[1], given.axis[2]}, quat[4];
     MathExtra::norm3(axis);
@@ -133,7 +140,11 @@ RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, ar
   cmax = tmax = std::min(mesh->nparts, MAX_TOUCHES);
   contact = new Contact[cmax];
   if (comm->me == 0 && mesh->open)
-    utils::logmesg(lmp, "Region {}: {} triangles, open: it is behind them\n", id, mesh->size());
+    utils::logmesg(lmp,
+                   "Region {}: {} triangles, open: it is behind them; x {:.6g} to {:.6g}, y {:.6g} "
+                   "to {:.6g}, z {:.6g} to {:.6g}\n",
+                   id, mesh->size(), mesh->lo[0], mesh->hi[0], mesh->lo[1], mesh->hi[1],
+                   mesh->lo[2], mesh->hi[2]);
   else if (comm->me == 0)
     utils::logmesg(lmp, "Region {}: {} triangles, volume {:.8g}, center {:.8g} {:.8g} {:.8g}\n", id,
                    mesh->size(), mesh->volume, mesh->center[0], mesh->center[1], mesh->center[2]);
@@ -191,6 +202,17 @@ void RegMPMMesh::init()
   Region::init();
   if (!mesh->open || warned || dynamic || comm->me != 0) return;
   const double *const lo = domain->boxlo, *const hi = domain->boxhi;
+  for (int d = 0; d < domain->dimension; d++) {
+    if (mesh->lo[d] <= hi[d] && mesh->hi[d] >= lo[d]) continue;
+    warned = true;
+    error->warning(
+        FLERR,
+        "The open surface of region {} is outside of the box: along {} it goes from "
+        "{:.8g} to {:.8g}, and the box from {:.8g} to {:.8g}. Look at its scale and origin, "
+        "which in a map can be far away",
+        id, "xyz"[d], mesh -> lo[d], mesh -> hi[d], lo[d], hi[d]);
+    return;
+  }
   for (const auto &x : mesh->rim) {
     bool in_box = true;
     for (int d = 0; d < domain->dimension; d++) {
@@ -229,6 +251,7 @@ int RegMPMMesh::inside(double x, double y, double z)
  *  read. */
 void RegMPMMesh::find_place(const double *x)
 {
+  if (!dynamic) return MathExtra::copy3(x, place);
   placing = true;
   match(x[0], x[1], x[2]);
   placing = false;
@@ -244,45 +267,34 @@ double RegMPMMesh::distance(const double *x, double cutoff, double &along_z)
   return interior ? d : -d;
 }
 
-/** In 2d cells are columns at the z of the places, which is the same for all. */
-bool RegMPMMesh::distance_by_cells(const double *x, double cutoff, double exact, double size,
-                                   double &distance)
+SurfaceCells &RegMPMMesh::cells_of_size(double size)
 {
-  constexpr std::size_t MOST = 1 << 20;    // cells in memory
-  constexpr int BITS = 21;                 // of an index
-  const bool flat = domain->dimension == 2;
+  return cells.try_emplace(size, *mesh, size, domain->dimension == 2).first->second;
+}
+
+bool RegMPMMesh::distance_in_cells(SurfaceCells &known, const double *x, double cutoff,
+                                   double &distance, double *gradient)
+{
   find_place(x);
-  SurfaceMesh::Point center = {0.0, 0.0, place[2]}, closest = center;
-  uint64_t key = 0;
-  bool in_range = true;
-  for (int d = 0; d < (flat ? 2 : 3); d++) {
-    const double index = std::floor((place[d] - mesh->lo[d]) / size) + (1 << (BITS - 1));
-    in_range = in_range && index >= 0.0 && index < (1 << BITS);
-    if (!in_range) break;
-    key = key << BITS | (uint64_t) index;
-    center[d] = mesh->lo[d] + (index - (1 << (BITS - 1)) + 0.5) * size;
-  }
-  if (in_range) {
-    auto &known = cells[size];
-    auto found = known.find(key);
-    if (found == known.end()) {
-      if (known.size() >= MOST) known.clear();
-      Linear linear = {};
-      linear.value = mesh->distance_within(center, cutoff, closest, last_closest);
-      for (int d = 0; d < 3 && std::fabs(linear.value) < cutoff && linear.value != 0.0; d++)
-        linear.gradient[d] = (center[d] - closest[d]) / linear.value;
-      found = known.emplace(key, linear).first;
-    }
-    const Linear &linear = found->second;
-    distance = linear.value;
-    for (int d = 0; d < 3; d++) distance += linear.gradient[d] * (place[d] - center[d]);
-    if (!interior) distance = -distance;
-    if (flat && std::fabs(linear.gradient[2]) > 0.5) return false;
-    if (std::fabs(distance) > exact) return true;
-  }
-  double along_z;
-  distance = RegMPMMesh::distance(x, cutoff, along_z);
-  return !flat || along_z <= 0.5 * std::fabs(distance);
+  SurfaceMesh::Point up;
+  const auto answer =
+      known.find({place[0], place[1], place[2]}, distance, gradient ? &up : nullptr);
+  const bool too_far = std::fabs(distance) >= cutoff;
+  if (answer == SurfaceCells::UNKNOWN || (answer == SurfaceCells::FAR && (gradient || !too_far)))
+    return false;
+  if (!interior) distance = -distance;
+  if (too_far) distance = std::copysign(cutoff, distance);
+  if (!gradient) return true;
+  if (!interior)
+    for (double &component : up) component = -component;
+  MathExtra::copy3(up.data(), gradient);
+  if (!rotateflag) return true;
+  double from[3] = {place[0], place[1], place[2]}, to[3];
+  MathExtra::add3(from, gradient, to);
+  forward_transform(from[0], from[1], from[2]);
+  forward_transform(to[0], to[1], to[2]);
+  MathExtra::sub3(to, from, gradient);
+  return true;
 }
 
 /** The closest point of each part of the surface, if x is on the given side and it is within the

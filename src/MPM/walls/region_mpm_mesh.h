@@ -18,14 +18,13 @@ RegionStyle(mpm/mesh,RegMPMMesh);
 #include "declare/option.h"
 #include "region.h"
 
-#include <cstdint>
 #include <map>
 #include <memory>
-#include <unordered_map>
 
 namespace MPM_NS {
+class SurfaceCells;
 class SurfaceMesh;
-}
+}    // namespace MPM_NS
 
 namespace LAMMPS_NS {
 
@@ -63,25 +62,22 @@ class RegMPMMesh : public Region {
    *  places near each other are asked for one after the other. */
   double distance(const double *x, double cutoff, double &along_z);
 
-  /** As distance() for places nearer to the surface than exact. Farther away, the distance is
-   *  linear in cells of this size, so that a search is needed only once per cell, and not for each
-   *  place. The value does not depend on earlier calls. Returns false if the closest point is along
-   *  z of x (in 2d, the closest point of the section is needed instead). */
-  bool distance_by_cells(const double *x, double cutoff, double exact, double size,
-                         double &distance);
+  /** Cells of distances with this size, in the coordinates of the mesh. */
+  MPM_NS::SurfaceCells &cells_of_size(double size);
+
+  /** Distance of x as these cells have it, at most the cutoff, and its gradient. Returns false if
+   *  they do not know it. */
+  bool distance_in_cells(MPM_NS::SurfaceCells &, const double *x, double cutoff, double &distance,
+                         double *gradient);
 
  private:
-  struct Linear {    // distance in a cell: value at its center, and gradient
-    double value, gradient[3];
-  };
-  using Cells = std::unordered_map<uint64_t, Linear>;    // keys: see distance_by_cells()
   std::unique_ptr<MPM_NS::SurfaceMesh> mesh;
   bool leaky = false;
   bool warned = false;     // that it ends in the box
   bool placing = false;    // inside() only stores its argument, in the coordinates of the mesh
   double place[3];
-  int last_closest = -1;            // index of a triangle, see SurfaceMesh::distance_within()
-  std::map<double, Cells> cells;    // by the size of the cells
+  int last_closest = -1;    // index of a triangle, see SurfaceMesh::distance_within()
+  std::map<double, MPM_NS::SurfaceCells> cells;    // by their size
 
   void report(const char *file) const;
   void find_place(const double *x);
