@@ -228,6 +228,77 @@ run 200
   EXPECT_NEAR(gained, along * 0.8 * 2.0, 0.02 * along * 0.8 * 2.0);
 }
 
+// Two blocks slide side by side, one on the patch: on a face of the box under tilted gravity, and on a
+// raster.
+TEST(Terrain, PatchesHaveTheirOwnFriction)
+{
+  const ScratchFile flat("flat.asc", raster(9, 9, -2.0, -2.0, 2.0, [](double, double) {
+                           return 0.6;
+                         }));
+  const std::string input = space("lj", "f f f", "0 12 0 8 0 6") + R"(
+fix grid all mpm 0.5
+region one block 1 4 0.5 3 LOW
+region two block 1 4 5 7.5 LOW
+group one empty
+group two empty
+create_points 1 region one ppc 2 group one
+create_points 1 region two ppc 2 group two
+fix m all mpm/material density 1.0 neohookean 500.0 0.3
+region wood block INF INF 4 INF INF INF
+region ground mpm/mesh FILE 1.0 0 0 0
+fix w all mpm/boundary WALL separate friction 0.5 patch wood 0.2
+fix g all gravity 1.0 vector 0.6 0 -0.8
+timestep 0.01
+variable one equal vcm(one,x)
+variable two equal vcm(two,x)
+run 100
+)";
+  for (const bool on_raster : {false, true}) {
+    Scene scene;
+    scene.commands(replaced(replaced(replaced(input, "WALL", on_raster ? "region ground" : "zlo"),
+                                     "LOW", on_raster ? "0.6 3.1" : "0 2.5"),
+                            "FILE", flat.name));
+    const double from[2] = {scene.evaluate("v_one"), scene.evaluate("v_two")};
+    scene.commands("run 200");    // after the blocks have settled
+    EXPECT_NEAR(scene.evaluate("v_one") - from[0], (0.6 - 0.5 * 0.8) * 2.0, 0.02);
+    EXPECT_NEAR(scene.evaluate("v_two") - from[1], (0.6 - 0.2 * 0.8) * 2.0, 0.02);
+  }
+  expect_refused(
+      space("lj", "f f f", "0 4 0 4 0 4") +
+          "fix grid all mpm 0.5\nfix m all mpm/material density 1.0 neohookean 500.0 0.3\n"
+          "variable d equal 0.1*time\nregion moves block 0 1 0 1 0 1 move v_d NULL NULL\n",
+      {{"fix w all mpm/boundary zlo separate patch none 0.2\nrun 0", "Region none"},
+       {"fix w all mpm/boundary zlo separate patch moves 0.2\nrun 0", "must not move"},
+       {"fix w all mpm/boundary zlo stick patch moves 0.2", "slip or separate"},
+       {"fix w all mpm/boundary zlo separate patch moves -0.2", "patch"}});
+}
+
+// The solver of implicit steps knows the coefficients, too.
+TEST(Terrain, PatchesInImplicitSteps)
+{
+  Scene scene;
+  scene.commands(plane("lj", "f f", "0 24 0 4") + R"(
+fix grid all mpm 0.5
+region one block 1 4 0 1.5 INF INF
+region two block 13 16 0 1.5 INF INF
+group one empty
+group two empty
+create_points 1 region one ppc 2 group one
+create_points 1 region two ppc 2 group two
+fix m all mpm/material density 1.0 neohookean 500.0 0.3
+region wood block 12 INF INF INF INF INF
+fix w all mpm/boundary ylo separate friction 0.5 patch wood 0.2
+fix g all gravity 1.0 vector 0.6 -0.8 0
+fix i all mpm/implicit euler
+timestep 0.05
+variable one equal vcm(one,x)
+variable two equal vcm(two,x)
+run 10
+)");
+  EXPECT_NEAR(scene.evaluate("v_one"), (0.6 - 0.5 * 0.8) * 0.5, 0.004);
+  EXPECT_NEAR(scene.evaluate("v_two"), (0.6 - 0.2 * 0.8) * 0.5, 0.004);
+}
+
 TEST(Terrain, SaysWhereItIs)
 {
   const ScratchFile file("hill.asc", raster(5, 4, 10.0, -2.0, 0.5, hill));

@@ -10,6 +10,7 @@
 #include "mpm_lammps.h"
 #include "stl_testing.h"
 
+#include "mesh/surface_cells.h"
 #include "region.h"
 #include "walls/region_mpm_mesh.h"
 
@@ -1459,7 +1460,7 @@ TEST(Regions, NoTrailBehindAMovingBody)
 
 /* ---------------------------------------------------------------------- ranks and restart */
 
-// Distances of a mesh: those of regions in general, and what walls take for material before them
+// Distances of a mesh: those of regions in general, and those in cells, also of a region that turns
 SERIAL_TEST(MeshWall, Distances)
 {
   constexpr int n = 24;
@@ -1474,10 +1475,11 @@ SERIAL_TEST(MeshWall, Distances)
     ASSERT_NE(region, nullptr);
     region->init();
     region->prematch();
-    double largest = 0.0;
-    int near = 0, far = 0, inside = 0;
+    auto &cells = region->cells_of_size(0.5 * h);
+    double largest = 0.0, slowest = 1.0;
+    int known = 0, inside = 0;
     for (int k = 0; k < 4000; k++) {
-      double x[3], up, by_cells;
+      double x[3], up, in_cells, gradient[3];
       for (int d = 0; d < 3; d++)
         x[d] = 4.0 * std::fmod((k + 1) * std::sqrt(d == 0 ? 2.0 : d == 1 ? 3.0 : 5.0), 1.0) - 1.8;
       const double exact = region->distance(x, cutoff, up);
@@ -1492,21 +1494,21 @@ SERIAL_TEST(MeshWall, Distances)
         EXPECT_NEAR(std::abs(exact), region->contact[0].r, 1.0e-12);
       else
         EXPECT_EQ(std::abs(exact), cutoff);
-      ASSERT_TRUE(region->distance_by_cells(x, cutoff, h, 0.25 * h, by_cells));
-      if (std::abs(exact) < 0.9 * h) {
-        near++;
-        EXPECT_EQ(by_cells, exact);
-      } else if (std::abs(exact) < 0.9 * cutoff && (exact > 0.0) != out) {
-        far++;
-        grow(largest, by_cells - exact);
-      }
+      if (!region->distance_in_cells(cells, x, cutoff, in_cells, gradient)) continue;
+      EXPECT_LE(std::abs(in_cells), cutoff);
+      grow(largest, in_cells - exact);
+      if (std::abs(exact) > 0.9 * cutoff) continue;
+      known++;
+      // along its gradient the distance grows as fast as the way
+      constexpr double step = 1.0e-3;
+      for (int d = 0; d < 3; d++) x[d] += step * gradient[d];
+      slowest = std::min(slowest, (region->distance(x, cutoff, up) - exact) / step);
     }
-    EXPECT_GT(std::min(near, far), 100);
+    EXPECT_GT(known, 400);
     EXPECT_GT(std::min(inside, 4000 - inside), 100);
-    // half the diagonal of a cell: its square over the curvature, and the angle between two facets
-    const double half = 0.125 * std::sqrt(3.0) * h;
-    EXPECT_LT(measured("error beyond a node spacing, in node spacings", largest / h),
-              (half * half / 2.0 + half * M_PI / n) / h);
+    EXPECT_LT(measured("error in node spacings", largest / h),
+              2.0 * 0.5 * MPM_NS::SurfaceCells::TOLERANCE);
+    EXPECT_GT(slowest, std::cos(2.0 * M_PI / n));    // the angle between facets
   }
 }
 

@@ -294,7 +294,7 @@ void MPMRigidCollisions::add(int k, int o, const Near &near)
   touch.b = o < n ? bodies[o] : -1;
   MathExtra::copy3(near.n, touch.n);
   obstacle.velocity(near.x, near.n, touch.moving);
-  touch.friction = obstacle.friction;
+  touch.friction = obstacle.friction_at(near.x);
   const auto &body = members[k].body;
   if (o < n && !body.sticks()) touch.friction = std::min(touch.friction, body.friction);
 

@@ -143,6 +143,8 @@ void FixMPMBoundary::check_field(const MPMField &field) const
         keeps + "separate, use fix wall/gran or a pair style"},
        {field.options.total && wall.region_moves(), "frame total",
         keeps + "a moving region, use stick velocity with variables, displacement, or rotate"},
+       {field.options.total && !wall.patches.empty(), "frame total",
+        keeps + "patch, use frame updated"},
        {field.options.total && wall.rotating() && wall.kind != MPMWall::STICK, "frame total",
         keeps + "slip on a wall that turns, use stick"},
        {field.options.total && wall.rotating() && field.options.stress_before(),

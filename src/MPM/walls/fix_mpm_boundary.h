@@ -70,8 +70,8 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   MPMTrialContact *trial_contact() override;
   void act(double dt, Stage) override;
 
-  double coefficient() const override { return wall.friction; }
-  bool loses_heat() const override { return wall.friction > 0.0 && !wall.heat.said; }
+  double coefficient() const override { return wall.least_friction(); }
+  bool loses_heat() const override { return wall.rubs() && !wall.heat.said; }
   bool gives_heat() const override { return wall.heat.heats(); }
   /** Is the wall a region? Otherwise it is one or more faces of the box. */
   bool is_region() const { return !wall.region_id.empty(); }

@@ -232,7 +232,7 @@ void MPMMirrorNodes::act(MPMWallContact &contact)
   for (const bool last : {false, true}) {
     std::size_t k = 0;
     for (auto &face : faces) {
-      if (!last || wall.kind == MPMWall::STICK || wall.friction > 0.0)
+      if (!last || wall.kind == MPMWall::STICK || wall.rubs())
         for (std::size_t j = 0; j < face.lines.size(); j++) {
           contact.use_constraint(k + j);
           act_on_line(contact, face, face.lines[j], last);

@@ -29,8 +29,13 @@ MPMWallObstacle::MPMWallObstacle(FixMPMBoundary &fix, const MPMWall &wall, const
 {
   name = face < 0 ? "the region of fix mpm/boundary " : "a face of fix mpm/boundary ";
   name += fix.id;
-  // what sticks does not slide, unless the wall leaves it free to do so
-  friction = wall.kind != MPMWall::STICK ? wall.friction : wall.all_given() ? HUGE_VAL : 0.0;
+}
+
+/** What sticks does not slide, unless the wall leaves it free to do so. */
+double MPMWallObstacle::friction_at(const double *x) const
+{
+  if (wall.kind == MPMWall::STICK) return wall.all_given() ? HUGE_VAL : 0.0;
+  return wall.friction_at(x);
 }
 
 /** The place for which a region, which is already where it will be at the end of the step, has the

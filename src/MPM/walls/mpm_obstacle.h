@@ -22,7 +22,7 @@ class MPMWall;
 class MPMObstacle {
  public:
   std::string name;            ///< for messages
-  double friction = 0.0;       ///< coefficient; HUGE_VAL: nothing slides on it
+  double friction = 0.0;       ///< see friction_at()
   double restitution = 1.0;    ///< largest ratio of the speeds after and before a collision
 
   virtual ~MPMObstacle() = default;
@@ -31,6 +31,8 @@ class MPMObstacle {
   virtual double distance(const double *x, double far) const = 0;
   /** Unit normal out of the obstacle at x; zero: not known. */
   virtual void normal(const double *x, double *n) const = 0;
+  /** Coefficient at x; HUGE_VAL: nothing slides on it. */
+  virtual double friction_at(const double * /*x*/) const { return friction; }
   /** Velocity in this step of the surface with the normal n at x. */
   virtual void velocity(const double *x, const double *n, double *v) const = 0;
   /** Is the boundary a plane everywhere, so that only corners can meet it? */
@@ -49,6 +51,7 @@ class MPMWallObstacle : public MPMObstacle {
   double distance(const double *x, double far) const override;
   void normal(const double *x, double *n) const override;
   void velocity(const double *x, const double *n, double *v) const override;
+  double friction_at(const double *x) const override;
   bool is_plane() const override { return plane; }
   void push(const double *x, const double *impulse) override;
 

@@ -36,11 +36,48 @@ void MPMWall::init()
   moves_and_holds = kind != SEPARATE && in_implicit_steps && now && now->dynamic_check();
 }
 
+void MPMWall::find_patches()
+{
+  for (auto &part : patches) {
+    part.region = domain->get_region_by_id(part.region_id);
+    if (!part.region)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Region {} for keyword patch of fix mpm/boundary does not exist", part.region_id);
+    part.region->init();
+    if (part.region->dynamic_check() || part.region->varshape)
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Region {} for keyword patch of fix mpm/boundary {} must not move", part.region_id,
+                 id);
+    part.region->prematch();
+  }
+}
+
+double MPMWall::friction_at(const double *x) const
+{
+  double mu = friction;
+  for (const auto &part : patches)
+    if (part.region->match(x[0], x[1], x[2])) mu = part.friction;
+  return mu;
+}
+
+double MPMWall::friction_at(const Grid &grid, const int64_t *node, int n) const
+{
+  if (patches.empty()) return friction;
+  const int64_t *const end = node + n, *const seen = std::find_if(node, end, [](int64_t k) {
+                                         return k >= 0;
+                                       });
+  if (seen == end) return friction;
+  double x[3];
+  grid.node_position(*seen, x);
+  return friction_at(x);
+}
+
 void MPMWall::init_region()
 {
   motion_step = -1;
   placed = false;
   steps = 0;
+  find_patches();
   if (region_id.empty()) return;
   region = domain->get_region_by_id(region_id);
   if (!region)
@@ -105,7 +142,7 @@ bool MPMWall::acts_across() const
 bool MPMWall::holds_surface() const
 {
   const bool sticks = !is_driven() && !in_implicit_steps;
-  return (kind == STICK ? sticks : kind == SLIP && friction == 0.0) && !moves_and_holds;
+  return (kind == STICK ? sticks : kind == SLIP && !rubs()) && !moves_and_holds;
 }
 
 bool MPMWall::prescribes(const double *normal, int d) const
@@ -353,6 +390,14 @@ Options MPMBoundaryOptions::declare(int dim)
   o.add("friction",
         {number(friction, "mu", NOT_NEGATIVE, "1",
                 "coefficient of Coulomb friction, for *slip* and *separate*")});
+  o.add("patch",
+        {text(patch.region_id, "region-ID", "in this region the wall has another coefficient"),
+         number(patch.friction, "mu", NOT_NEGATIVE, "1",
+                "this coefficient of friction; the keyword can be given several times")})
+      .then([this] {
+        patches.push_back(patch);
+      })
+      .standard("none");
   heat.declare(o, "the energy lost by friction becomes heat of the material",
                "share of this energy that becomes heat of the material");
   o.add("velocity",
@@ -384,7 +429,8 @@ Options MPMBoundaryOptions::declare(int dim)
   o.refuse([=] {
     return OptionRules{
         {kind == STICK, "friction", "needs kind slip or separate"},
-        {heat.heats() && friction == 0.0, "heat", "is that of friction, which needs a coefficient"},
+        {kind == STICK, "patch", "has friction, which needs kind slip or separate"},
+        {heat.heats() && !rubs(), "heat", "is that of friction, which needs a coefficient"},
         {kind != STICK && !all_given(), "velocity", "allows NULL only with kind stick"},
         {!velocity[0].given && !velocity[1].given && (dim == 2 || !velocity[2].given), "velocity",
          "leaves all components free"},
@@ -400,6 +446,14 @@ Options MPMBoundaryOptions::declare(int dim)
         {!all_given(), "rotate", "prescribes all components of the velocity"}};
   });
   return o;
+}
+
+double MPMBoundaryOptions::least_friction() const
+{
+  double least = friction;
+  for (const auto &part : patches)
+    if (part.friction > 0.0 && !(least > 0.0 && least < part.friction)) least = part.friction;
+  return least;
 }
 
 bool MPMBoundaryOptions::is_driven() const

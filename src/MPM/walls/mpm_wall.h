@@ -31,6 +31,14 @@ struct MPMBoundaryOptions {
 
   Kind kind = STICK;
   double friction = 0.0;
+  /** Coefficients of friction where the wall is in a region; the last one that has a place counts. */
+  struct Patch {
+    std::string region_id;
+    double friction = 0.0;
+    Region *region = nullptr;
+  };
+  std::vector<Patch> patches;
+  Patch patch;                                   ///< the one that is read
   MPM_NS::NumberOrVariable velocity[3], rate;    ///< components that are not given are free
   bool by_displacement = false;                  ///< velocity[] holds displacements
   double center[3] = {0.0, 0.0, 0.0}, axis[3] = {0.0, 0.0, 0.0};    ///< of the rotation
@@ -39,7 +47,11 @@ struct MPMBoundaryOptions {
 
   bool all_given() const { return velocity[0].given && velocity[1].given && velocity[2].given; }
   /** Does the impulse decide whether there is contact, or whether it slides? */
-  bool decides() const { return kind == SEPARATE || friction > 0.0; }
+  bool decides() const { return kind == SEPARATE || rubs(); }
+  /** The least coefficient that is not zero; zero if all are. */
+  double least_friction() const;
+  /** Has the wall friction anywhere? */
+  bool rubs() const { return friction > 0.0 || !patches.empty(); }
   bool rotating() const { return axis[0] != 0.0 || axis[1] != 0.0 || axis[2] != 0.0; }
   /** Is the wall given a velocity? If it is a region, material at its surface may leave the
    *  region. */
@@ -167,6 +179,10 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
   /** Upper bound of the distance that parts of the region in the box have moved since the state
    *  then. */
   double way_since(const double *then) const;
+  /** Coefficient of friction at x, on the surface of the wall. */
+  double friction_at(const double *x) const;
+  /** The same at n nodes of a line, of which those with -1 do not count. */
+  double friction_at(const MPM_NS::Grid &, const int64_t *node, int n) const;
   /** Unit normal of the region at x; zero: not known. */
   void normal(const MPMField &, const double *x, double *n) const;
   /** The distance from the region for a position at the start of the step. The region is already
@@ -178,6 +194,7 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
   bool warned = false;        // about a region that is too fast
 
   void check_speed(double dt);
+  void find_patches();
 };
 
 }    // namespace LAMMPS_NS

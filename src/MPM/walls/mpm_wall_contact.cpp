@@ -29,7 +29,8 @@ bool MPMWallContact::holds(MPMField &field, MPMContactState &state, bool touched
                            double tangential, double &share, double mass)
 {
   const double by_water = touched ? water_on(node, n, normal) / mass : 0.0;
-  share = tangential_share(state, touched ? push : 0.0, by_water, tangential);
+  share = tangential_share(state, wall.friction_at(field.grid, node, n), touched ? push : 0.0,
+                           by_water, tangential);
   if (state == MPMContactState::OPEN && by_water > 0.0) push_by_water(field, node, n, normal);
   if (state == MPMContactState::SLIDING) reaction.begin_sliding(normal);
   return state != MPMContactState::OPEN;
@@ -37,8 +38,8 @@ bool MPMWallContact::holds(MPMField &field, MPMContactState &state, bool touched
 
 /** The share of a tangential impulse that friction gives, where the wall has this impulse along its
  *  normal, of which water bears a part. */
-double MPMWallContact::tangential_share(MPMContactState &state, double normal, double by_water,
-                                        double tangential) const
+double MPMWallContact::tangential_share(MPMContactState &state, double friction, double normal,
+                                        double by_water, double tangential) const
 {
   if (wall.kind == MPMWall::STICK) {
     state = MPMContactState::STUCK;
@@ -55,8 +56,8 @@ double MPMWallContact::tangential_share(MPMContactState &state, double normal, d
     const double grains = normal - by_water;
     if (wall.kind == MPMWall::SEPARATE && normal <= std::max(by_water, 0.0)) {
       state = MPMContactState::OPEN;
-    } else if (wall.friction > 0.0 && grains > 0.0) {
-      const CoulombFriction law = {wall.friction, wall.friction};
+    } else if (friction > 0.0 && grains > 0.0) {
+      const CoulombFriction law = {friction, friction};
       if (law.slides(tangential, grains)) return law.share(tangential, grains);
       state = MPMContactState::STUCK;
     }

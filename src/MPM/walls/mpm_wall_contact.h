@@ -38,12 +38,13 @@ struct MPMWallNode {
  *  weights in the motion of the surface of the material, with the sum one. */
 struct MPMContactConstraint : NodeLine {
   double normal[3] = {0.0, 0.0, 0.0};    ///< from the wall to the material
-  bool possible = true;    ///< the material touches the wall, or may touch it in this step
-  bool active = true;      ///< the material is held at the wall
-  double gap = 0.0;        ///< between material and wall at the start of the step [distance]
-  double impulse = 0.0;    ///< along the normal
-  double base = 0.0;       ///< the part of it by the motion of walls
-  double force = 0.0;      ///< normal force N
+  bool possible = true;        ///< the material touches the wall, or may touch it in this step
+  bool active = true;          ///< the material is held at the wall
+  double gap = 0.0;            ///< between material and wall at the start of the step [distance]
+  double impulse = 0.0;        ///< along the normal
+  double base = 0.0;           ///< the part of it by the motion of walls
+  double force = 0.0;          ///< normal force N
+  double coefficient = 0.0;    ///< of friction
   double slip[3] = {0.0, 0.0, 0.0};
   double friction[3] = {0.0, 0.0, 0.0};     ///< force
   double direction[3] = {0.0, 0.0, 0.0};    ///< w, see MPMWallTrial::add_friction_change()
@@ -88,7 +89,8 @@ class MPMWallContact {
 
   bool holds(MPMField &, MPMContactState &, bool touched, const int64_t *node, int n,
              const double *normal, double push, double tangential, double &share, double mass);
-  double tangential_share(MPMContactState &, double normal, double water, double tangential) const;
+  double tangential_share(MPMContactState &, double friction, double normal, double water,
+                          double tangential) const;
   double water_on(const int64_t *node, int n, const double *normal) const;
   void push_by_water(MPMField &, const int64_t *node, int n, const double *normal);
 };

@@ -142,7 +142,7 @@ void MPMWallNodes::list_region()
       MPMWallNode s = {first_node + n};
       const double gap = surface->distance(x, next);
       if (idle && gap <= -next) continue;
-      if (gap > MPMWall::ON_SURFACE * h) {
+      if (gap >= MPMWall::ON_SURFACE * h) {    // or beyond the cutoff
         if (across && gap < next) {
           s.distance = gap;
           outside.push_back(s);

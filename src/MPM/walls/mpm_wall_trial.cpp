@@ -56,7 +56,7 @@ bool MPMWallTrial::decides(const MPMWallNodes &list) const
 
 bool MPMWallTrial::has_friction() const
 {
-  return wall.friction > 0.0;
+  return wall.rubs();
 }
 
 MPMWallNodes &MPMWallTrial::nodes()
@@ -107,6 +107,7 @@ void MPMWallTrial::begin_trials(MPMField &of, double step, double time, double r
   for (std::size_t k = first_node; k < constraints.size() && separates && !touched; k++)
     constraints[k].possible = constraints[k].active = false;
   start_approaches(list, touched, rests);
+  for (auto &c : constraints) c.coefficient = wall.friction_at(list.field.grid, c.node, c.n);
 }
 
 /** Keeps the nodes of a constraint that have mass, with weights that add up to one. */
@@ -225,7 +226,7 @@ void MPMWallTrial::find_slip(const MPMContactConstraint &c, const double *u, dou
 template <class Use> void MPMWallTrial::visit_rubbing(const Use &use)
 {
   for (auto &c : constraints)
-    if (wall.friction != 0.0 && c.active && c.n > 0) use(c);
+    if (c.coefficient != 0.0 && c.active && c.n > 0) use(c);
 }
 
 /** (|s|^2 + eps^2)^(1/2), see MPMTrialContact. */
@@ -245,7 +246,7 @@ void MPMWallTrial::add_friction(const double *u, double *force)
     if (!(c.force > 0.0)) return;
     const double length = this->length(c);
     for (int d = 0; d < dim; d++) {
-      c.friction[d] = -wall.friction * c.force * c.slip[d] / length;
+      c.friction[d] = -c.coefficient * c.force * c.slip[d] / length;
       for (int j = 0; j < c.n; j++) force[dim * c.node[j] + d] += c.weight[j] * c.friction[d];
     }
   });
@@ -277,7 +278,7 @@ void MPMWallTrial::add_friction_change(const double *du, double scale, double *d
     change_of_direction(c, slip, turn);
     const double length = this->length(c), more = (c.impulse - c.base) / scale;
     for (int d = 0; d < dim; d++) {
-      const double change = -wall.friction * (more * c.slip[d] / length + c.force * turn[d]);
+      const double change = -c.coefficient * (more * c.slip[d] / length + c.force * turn[d]);
       for (int j = 0; j < c.n; j++) dforce[dim * c.node[j] + d] += c.weight[j] * change;
     }
   });
@@ -303,7 +304,7 @@ void MPMWallTrial::add_friction_blocks(double *blocks)
   visit_rubbing([&](MPMContactConstraint &c) {
     if (!(c.force > 0.0)) return;
     double along[3] = {0.0, 0.0, 0.0}, turn[3];
-    const double slope = wall.friction * c.force;
+    const double slope = c.coefficient * c.force;
     for (int e = 0; e < dim; e++) {
       for (int d = 0; d < 3; d++) along[d] = (d == e) - c.normal[d] * c.normal[e];
       change_of_direction(c, along, turn);
@@ -324,7 +325,7 @@ void MPMWallTrial::add_friction_stiffness(double *stiffness)
     const double size = MathExtra::lensq3(c.slip),
                  along = size > 0.0 ? MathExtra::dot3(turn, c.slip) / size : 1.0 / length(c);
     for (int j = 0; j < c.n; j++)
-      stiffness[c.node[j]] += c.weight[j] * wall.friction * c.force * along;
+      stiffness[c.node[j]] += c.weight[j] * c.coefficient * c.force * along;
   });
 }
 
