@@ -12,6 +12,7 @@
 #include "mpm_lammps.h"
 
 #include "error.h"
+#include "field/mpm_passes.h"
 
 using namespace MPM_TEST;
 
@@ -47,6 +48,20 @@ static Spin spin(const std::string &options, int steps)
   return {run.evaluate("c_L") / L, (run.evaluate("c_e[1]") + run.evaluate("c_e[2]")) / E,
           std::max(std::fabs(run.evaluate("v_px") - px), std::fabs(run.evaluate("v_py") - py)) /
               scale};
+}
+
+// wherever a batch of points begins, the memory behind it that may be read ends at the same place
+TEST(Rows, OfABatchEndWhereTheMemoryDoes)
+{
+  Scene run(replaced(disk, "OPTIONS", "") + "run 0\n");
+  const auto &field = *MPMField::find(run.lmp, "g");
+  const MPM_NS::PointRows all = field.rows();
+  EXPECT_EQ(all.guarded, run.lmp->atom->nmax - 1);
+  for (const int first : {0, 1, 5}) {
+    const MPM_NS::PointRows batch = rows_from(field, all, first);
+    EXPECT_EQ(batch.x - all.x, 3 * first);
+    EXPECT_EQ(batch.x + 3 * batch.guarded, all.x + 3 * all.guarded);
+  }
 }
 
 // functions of GIMP in a regular array end in planes of nodes: whether round-off gives these nodes a

@@ -6,6 +6,7 @@
 
 // One mesh in the files of several programs: the same points, and what the file says of them.
 
+#include "mesh/element.h"
 #include "mesh/mesh_file.h"
 #include "mesh_testing.h"
 
@@ -64,6 +65,23 @@ TEST(MeshFile, VolumesOfTwistedElements)
       for (const auto &p : run.gather()) volume += p.vol;
       EXPECT_NEAR(volume, exact(angle, top), 1e-12) << style << " " << angle << " " << top;
     }
+}
+
+// gradients of nodes that are a turned frame, each axis of another length
+TEST(ElementRule, LargestEigenvalue)
+{
+  const double c = std::cos(0.7), s = std::sin(0.7), C = std::cos(0.4), S = std::sin(0.4);
+  const double axis[3][3] = {{c * C, s * C, S}, {-s, c, 0.0}, {-c * S, -s * S, C}};
+  for (const auto &squares :
+       {std::array{1.0, 2.0, 5.0}, std::array{5.0, 2.0, 1.0}, std::array{4.0, 4.0, 1.0},
+        std::array{1.0, 4.0, 4.0}, std::array{3.0, 1e-3, 1e-3}, std::array{2.0, 2.0, 2.0}}) {
+    double g[4][3] = {{0.0}};
+    for (int k = 0; k < 3; k++)
+      for (int d = 0; d < 3; d++) g[k][d] = std::sqrt(squares[k]) * axis[k][d];
+    const auto &rule = MPM_NS::ElementRule::of(MPM_NS::ElementType::TETRAHEDRON);
+    EXPECT_NEAR(rule.largest_eigenvalue(g) / *std::max_element(squares.begin(), squares.end()), 1.0,
+                1e-7);
+  }
 }
 
 TEST(MeshFile, AllFormatsGiveTheSamePoints)

@@ -10,6 +10,7 @@
 #include "math_eigen.h"
 #include "mesh/stl_testing.h"
 #include "mesh/surface_file.h"
+#include "mesh/surface_points.h"
 #include "mesh/winding.h"
 
 #include <random>
@@ -51,6 +52,43 @@ TEST(SurfaceMesh, BoxHasExactDistances)
         EXPECT_TRUE(known == 0.0 || (known * exact > 0.0 && fabs(known) <= fabs(exact) + 1.0e-12));
       }
     }
+}
+
+// A cylinder of 24 long facets, whose lengths are 20 times their widths: next to a corner the
+// surface is the circle, up to the corners next to it around the axis, however far those along the
+// axis are
+TEST(SurfacePoints, CylinderEndsAtTheNextCorners)
+{
+  constexpr int N = 24;
+  constexpr double ANGLE = 6.28318530717958647693 / N, LENGTH = 20.0 * ANGLE;
+  const auto at = [](double k, double z) {
+    return Point{std::cos(k * ANGLE), std::sin(k * ANGLE), z};
+  };
+  Soup soup;
+  for (int k = 0; k < N; k++) {
+    const int next = (k + 1) % N;
+    const Point a = at(k, 0.0), b = at(next, 0.0), c = at(next, LENGTH), d = at(k, LENGTH);
+    soup.push_back({a, b, c});
+    soup.push_back({a, c, d});
+    soup.push_back({b, a, {0.0, 0.0, 0.0}});
+    soup.push_back({d, c, {0.0, 0.0, LENGTH}});
+  }
+  const MPM_NS::SurfacePoints points(soup, 10.0 * LENGTH);
+  ASSERT_EQ(points.size(), 2u * N + 2u);
+  int corners = 0;
+  for (std::size_t i = 0; i < points.size(); i++) {
+    if (std::hypot(points[i][0], points[i][1]) < 0.5) continue;
+    const double k = std::atan2(points[i][1], points[i][0]) / ANGLE;
+    corners++;
+    for (const double more : {-2.0, -1.3, -0.5, 0.3, 0.9, 1.5}) {
+      Point x;
+      const bool near = std::fabs(more) < 1.0;
+      EXPECT_EQ(points.farthest(i, at(k + more, 0.0), x), near) << k << " " << more;
+      const Point exact = near ? at(k + more, points[i][2]) : points[i];
+      for (int d = 0; d < 3; d++) EXPECT_NEAR(x[d], exact[d], 1e-3) << k << " " << more;
+    }
+  }
+  EXPECT_EQ(corners, 2 * N);
 }
 
 // at equally close faces the mean of their normals, at the surface that of the face, edge or corner

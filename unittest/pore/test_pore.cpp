@@ -473,6 +473,27 @@ SERIAL_TEST(TimeStep, IsUndrained)
               1e-12);
 }
 
+// Pressure puts water into the pores, which have taken all of the change of volume, and makes room
+// as grains become smaller. Many points at once have it per initial volume
+SERIAL_TEST(Storage, OfDeformedSoil)
+{
+  MPMPoreWater water;
+  water.bulk = 2.0e9;
+  MPMPoreSoil soil;
+  soil.porosity = 0.4;
+  soil.biot = 0.8;
+  soil.grains = 3.0e10;
+  const double J[] = {0.7, 1.0, 1.25};
+  double storage[3];
+  soil.storage_at(3, J, water, storage);
+  for (int p = 0; p < 3; p++) {
+    const double pores = J[p] - 0.6;
+    const double exact = pores / 2.0e9 + (0.8 * J[p] - pores) / 3.0e10;
+    EXPECT_NEAR(storage[p] / exact, 1.0, 1e-12);
+    EXPECT_NEAR(J[p] * soil.storage_at(J[p], water) / exact, 1.0, 1e-12);
+  }
+}
+
 // units in which mass, energy, pressure do not fit together: period of a wave, water at rest
 SERIAL_TEST(Units, Metal)
 {
