@@ -286,7 +286,7 @@ SERIAL_TEST(Channel, BadInput)
             "region around block 0.3 0.392 0.676 0.78 INF INF\n"
             "region slant intersect 5 a b c d around\n"
             "fix in all mpm/emit 1 region slant velocity 0.6 0.8 0",
-        "must come along an axis of the box"},
+        "must come along an axis of the box, not along 0.6 0.8 0:"},
        {flow + "\nfix in all mpm/emit 1 region short velocity 0 1 0 spacing 0.01",
         "less than a cell"}},
       "timestep 0.001\nrun 1\n");

@@ -122,6 +122,23 @@ PARAMETER_TEST(Plug, IsExact, Inflow,
   EXPECT_LT(std::fabs(e[10]), 1e-12 * e[12]);                      // the residual
 }
 
+// an inlet that is not wide enough for two points, or for a whole one, has one column in its middle
+SERIAL_TEST(Plug, NarrowInlet)
+{
+  for (const double width : {0.004, 0.012}) {
+    Scene run(replaced(plug("0.02", 0.0, "2 0 0"), "0.30000000000000004 INF",
+                       strprintf("%.17g INF", 0.2 + width)) +
+              "timestep 0.0004\nrun 50\n");
+    EXPECT_GT(run.n(), 10);
+    double mass = 0.0;
+    for (const auto &s : run.gather()) {
+      EXPECT_NEAR(s.x[1], 0.2 + 0.5 * width, 1e-14);
+      mass += s.mass;
+    }
+    EXPECT_NEAR(mass / (RHO * width * 0.01 * run.n()), 1.0, 1e-12);
+  }
+}
+
 // the section has the mass, not the lattice in it: a width of 5.3 points, a speed that varies
 TEST(Plug, PulsesAndOddWidth)
 {

@@ -369,6 +369,29 @@ SERIAL_TEST(Pipe, StretchedTooMuchIsTold)
   EXPECT_NEAR(measured("stretch", stretch), 1.65, 0.1);
 }
 
+// the largest stretch of the end of a bar, whatever its direction in the plane of the end, and also
+// where the bar has been sheared along this plane
+SERIAL_TEST(Face, StretchIsTheLargestOne)
+{
+  for (const auto &[yy, yz, zy, zz] :
+       {std::array{1.8, 0.0, 0.0, 1.0}, std::array{1.0, 0.0, 0.0, 1.8},
+        std::array{1.4, 0.4, 0.4, 1.4}, std::array{1.0, 0.0, 1.4, 1.0}}) {
+    Scene run(bar("", 0.2, "", "") + "fix load all mpm/traction region end pressure 1\nrun 0\n");
+    for (int i = 0; i < run.n(); i++) {
+      double *const F = run.points().F[i];
+      F[4] = yy;
+      F[5] = yz;
+      F[7] = zy;
+      F[8] = zz;
+    }
+    const std::string log = log_of(run, "run 0\n"), words = "is stretched by a factor of ";
+    const auto at = log.find(words);
+    ASSERT_NE(at, std::string::npos) << log;
+    EXPECT_NEAR(std::stod(log.substr(at + words.size())),
+                0.5 * (std::hypot(yy + zz, yz - zy) + std::hypot(yy - zz, yz + zy)), 0.006);
+  }
+}
+
 // pressure on all of a free body: neither force nor torque while it moves, and that pressure inside
 SERIAL_TEST(Free, NoForceNoTorque)
 {
