@@ -384,6 +384,24 @@ SERIAL_TEST(Bending, WarnsOfRoughMeshes)
   EXPECT_EQ(warnings(1, 0.5), 1u);
 }
 
+// The nodes of a triangle and its neighbors may be ghosts of other ranks. Here the neighbors are
+// the farthest ones, twice the edge of the triangle apart; stretched along that line by 4, as much
+// as the norm of F says, they leave next to nothing of the room for more
+SERIAL_TEST(Bending, GhostsAreAllNodesOfAPatch)
+{
+  const auto place = [](double u, double v) {
+    return Node{2.0 * u - 0.5 * v, v, 0.0};
+  };
+  const Plate strip(0.05, 1e6, 0.3, sheet_of(2, 1, place));
+  const ScratchFile file("strip.msh", strip.text());
+  Scene run(replaced(scene(strip, file, 4.0), "comm_modify", "#") +
+            "fix move all nve\nrun 0 post no\n");
+  EXPECT_GE(measured("cutoff", run.lmp->comm->get_comm_cutoff()), 2.0);
+  for (int i = 0; i < run.n(); i++) run.x()[i][0] *= 4.0;
+  run.commands("run 0 post no\nrun 0 post no\n");
+  EXPECT_GE(measured("cutoff", run.lmp->comm->get_comm_cutoff()), 8.0);
+}
+
 // a strip of lines rolled to half a circle without being stretched has the energy of bending alone,
 // D angle^2/2 l for each corner, and no stress
 SERIAL_TEST(Bending, RolledStripHasNoMembraneStress)

@@ -503,13 +503,15 @@ TEST(Axisymmetric, AdhesionActsOnTheWholeCircle)
 TEST(Axisymmetric, TimeStepOfRings)
 {
   const double nu = 0.3, c = sqrt((1 - nu) / ((1 + nu) * (1 - 2 * nu)));
-  for (const double inner : {0.0, 0.5, 4.0}) {
-    Scene run(plane("lj", "f p", strprintf("%g 8 0 4", inner)) +
-              body("box", "density 1.0 linear 1.0 0.3", "1.0 axisymmetric yes") +
-              "fix axis all mpm/boundary xlo slip\nfix dt all mpm/dt 0.5\nrun 0\n");
-    const double ratio = inner > 0.0 ? 0.5 / (inner + 0.25) : 0.0;
-    EXPECT_NEAR(run.lmp->update->dt, 0.5 / (c * sqrt(1.0 + ratio * ratio)), 1e-12) << inner;
-  }
+  for (const double inner : {0.0, 0.5, 4.0})
+    for (const double h : {1.0, 1e-6}) {    // also of a millionth of the unit of length
+      Scene run(plane("lj", "f p", strprintf("%g %g 0 %g", inner * h, 8 * h, 4 * h), 1, 0.3 * h) +
+                body("box", "density 1.0 linear 1.0 0.3", strprintf("%g axisymmetric yes", h)) +
+                "fix axis all mpm/boundary xlo slip\nfix dt all mpm/dt 0.5\nrun 0\n");
+      const double ratio = inner > 0.0 ? 0.5 / (inner + 0.25) : 0.0;
+      EXPECT_NEAR(run.lmp->update->dt / h * c * sqrt(1.0 + ratio * ratio), 0.5, 1e-12)
+          << inner << " " << h;
+    }
 }
 
 // averages in cells are over the volume of the ring that a cell is

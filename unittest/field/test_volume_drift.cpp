@@ -123,6 +123,32 @@ SERIAL_TEST(Vortices, KeepTheirPressure)
   EXPECT_GT(measured("energy", with.second), measured("without", without.second));
 }
 
+// In a box that is full, the parts of the functions of all nodes in the box add up to the box, and
+// the volumes of points at nodes to all volumes: the mean filling of the nodes is the one over the
+// other, also if only the points next to one face are too large
+SERIAL_TEST(FullBox, HasTheVolumesOfItsPoints)
+{
+  for (const int dim : {2, 3})
+    for (int axis = 0; axis < dim; axis++)
+      for (const double offset : {0.0, 0.5}) {
+        Scene run(MPM_TEST::box(dim, "si", "f f f", "0 4 0 4 0 4", 1, 0.3) +
+                  "create_points 1 box spacing 0.5\n" +
+                  strprintf("fix grid all mpm 1 drift 0 origin %g %g%s\n", offset, offset,
+                            dim == 3 ? strprintf(" %g", offset).c_str() : "") +
+                  "fix m all mpm/material density 1 eos tait 1e-6 7\ntimestep 1e-3\n");
+        for (int i = 0; i < run.n(); i++)
+          if (run.x()[i][axis] < 1.0) {
+            run.lmp->atom->vfrac[i] *= 1.2;
+            run.mass()[i] *= 1.2;
+          }
+        const std::string log = log_of(run, "run 400\n"), words = "volumes add up to ";
+        const auto at = log.find(words);
+        ASSERT_NE(at, std::string::npos) << log;
+        EXPECT_NEAR(std::stod(log.substr(at + words.size())), 1.05, 1e-4)
+            << dim << " " << axis << " " << offset;
+      }
+}
+
 // Without the correction, water is lost, and the user is told.
 SERIAL_TEST(Water, LossIsTold)
 {

@@ -519,6 +519,9 @@ SERIAL_TEST(Immersed, WorkOfDragIsTheKineticEnergy)
     const double *e = run.compute_vector(), lost = run.sums(1).kinetic - start;
     EXPECT_LT(lost, -0.01 * start);
     EXPECT_LT(measured("work of drag", fabs(e[7] / lost - 1.0)), 1.0e-12);
+    // to the watch of energies it is work from outside
+    const auto &ledger = MPMField::find(run.lmp, "grid")->ledger;
+    EXPECT_LT(measured("from outside", fabs(ledger.driven / lost - 1.0)), 1.0e-12);
     EXPECT_LT(measured("loss in transfers", fabs(e[8] / lost)), 1.0e-11);
     EXPECT_LT(measured("imbalance", fabs(e[10] / lost)), 1.0e-12);
   }

@@ -154,6 +154,39 @@ SERIAL_TEST(Drained, Seeps)
   }
 }
 
+// Soil through which water flows bears a load that comes later, whatever the unit of length: forces
+// that are negligible next to those of the water are as small as these in any unit
+SERIAL_TEST(Drained, BearsALoadInAnyUnitOfLength)
+{
+  constexpr double PRESSURE = 100.0;
+  for (const double l : {1.0, 1e-6}) {
+    Scene run(plane("si", "p f", strprintf("0 %.17g 0 %.17g", 0.4 * l, l), 1, 0.03 * l) +
+              strprintf("create_points 1 box spacing %.17g\nfix grid all mpm %.17g\n", 0.05 * l,
+                        0.1 * l) +
+              "fix m all mpm/material " + SOIL + "\nfix floor all mpm/boundary ylo slip\n" +
+              strprintf("fix water all mpm/pore 2.2e9 1000 9810 soil m 0.4 constant 1e-6 "
+                        "ylo pressure %g yhi pressure 0\n",
+                        PRESSURE) +
+              "fix solve all mpm/implicit static\n" + steps(1e12 * l * l, 2));
+    const auto strain = [&] {
+      double sum = 0.0, n = 0.0;
+      for (int i = 0; i < run.n(); i++) {
+        if (run.x()[i][1] > 0.5 * l) continue;
+        sum += run.points().F[i][4] - 1.0;
+        n += 1.0;
+      }
+      return measured("strain", sum / n / (PRESSURE / MODULUS));
+    };
+    const double swollen = strain();    // by what the water does not bear in the lower half
+    EXPECT_NEAR(swollen, 0.75, 1e-3);
+    run.commands(strprintf("region top block INF INF %.17g INF INF INF\ngroup top region top\n"
+                           "variable fy equal -%g*lx/count(top)\nfix load top addforce 0 v_fy 0\n",
+                           0.95 * l, PRESSURE) +
+                 steps(1e12 * l * l, 1));
+    EXPECT_NEAR(strain() - swollen, -1.0, 1e-3);
+  }
+}
+
 // Mandel's strip between smooth plates: these move as they do under a constant force (A. Cheng, E.
 // Detournay, Int. J. Numer. Anal. Methods Geomech. 12 (1988) 551), and the pressure in the middle
 // rises first; the force is that

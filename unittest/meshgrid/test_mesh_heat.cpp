@@ -195,41 +195,52 @@ SERIAL_TEST(MeshHeat, LayersThatCutCells)
   for (const Kind kind : {QUADS, TRIANGLES})
     for (const bool cut : {false, true})
       for (const int n : {8, 16}) {
-        const ScratchFile file("block.msh", gmsh(kind, {n, 2, 0}, [](double x, double y, double) {
-                                 return std::array<double, 3>{x, 0.2 * y, 0.0};
-                               }));
-        const double at = 0.5 + (cut ? 0.5 / n : 0.0);
-        const auto layers = [&](const char *behind) {
-          const char *const conducting =
-              "mpm/material density 1 linear 1e-8 0.3 thermal conducting";
-          return box(2, "lj", "f f f", "-1 4 -1 4 -1 4", 2, 0.1) +
-              strprintf("create_points 1 elements %s halve 1\n"
-                        "region behind block %.17g INF INF INF INF INF\nset region behind type 2\n"
-                        "group front type 1\ngroup behind type 2\nfix m front %s 1 0 1\n"
-                        "fix m2 behind %s 1 0 %s\nfix g all mpm/mesh %s frame total\n"
-                        "fix h all mpm/mesh/heat g temperature xlo 1 temperature xhi 0\n"
-                        "timestep 0.002\n",
-                        file.name.c_str(), at, conducting, conducting, behind, file.name.c_str());
-        };
-        const auto told = [&](const char *behind) {
-          return times_said(layers(behind) + "run 1\n", "interfaces that are not along sides");
-        };
-        EXPECT_EQ(told("10"), 0);
-        EXPECT_EQ(told("10 orthotropic 10 10"), cut ? 1 : 0);
-        EXPECT_EQ(told("2 orthotropic 2 2"), 0);
-        for (const int axis : {0, 1, 2}) {
-          if (axis && (kind == TRIANGLES || n == 16)) continue;
-          Scene run(layers("10"));
-          if (axis) {
-            const double by[3] = {axis == 1 ? 1.25 : 1.0, axis == 2 ? 1.25 : 1.0, 1.0};
-            for (int i = 0; i < run.n(); i++)
-              for (int d = 0; d < 3; d++) run.points().F[i][4 * d] = by[d];
+        // turned: the sides of cells and the interface are not along the axes of the box
+        for (const bool turned : {false, true}) {
+          if (turned && (kind == TRIANGLES || n == 16 || !cut)) continue;
+          const double c = turned ? 0.8 : 1.0, s = turned ? 0.6 : 0.0;
+          const ScratchFile file(
+              "block.msh", gmsh(kind, {n, 2, 0}, [=](double x, double y, double) {
+                return std::array<double, 3>{c * x - 0.2 * s * y, s * x + 0.2 * c * y, 0.0};
+              }));
+          const double at = 0.5 + (cut ? 0.5 / n : 0.0);
+          const auto layers = [&](const char *behind) {
+            const char *const conducting =
+                "mpm/material density 1 linear 1e-8 0.3 thermal conducting";
+            return box(2, "lj", "f f f", "-1 4 -1 4 -1 4", 2, 0.1) +
+                strprintf("create_points 1 elements %s halve 1\n"
+                          "region behind plane %.17g %.17g 0 %g %g 0\nset region behind type 2\n"
+                          "group front type 1\ngroup behind type 2\nfix m front %s 1 0 1\n"
+                          "fix m2 behind %s 1 0 %s\nfix g all mpm/mesh %s frame total\n"
+                          "fix h all mpm/mesh/heat g temperature xlo 1 temperature xhi 0\n"
+                          "timestep 0.002\n",
+                          file.name.c_str(), c * at, s * at, c, s, conducting, conducting, behind,
+                          file.name.c_str());
+          };
+          const auto told = [&](const char *behind) {
+            return times_said(layers(behind) + "run 1\n", "interfaces that are not along sides");
+          };
+          EXPECT_EQ(told("10"), 0);
+          EXPECT_EQ(told("10 orthotropic 10 10"), cut ? 1 : 0);
+          EXPECT_EQ(told("2 orthotropic 2 2"), 0);
+          for (const int axis : {0, 1, 2}) {
+            if (axis && (kind == TRIANGLES || n == 16)) continue;
+            Scene run(layers("10"));
+            if (axis) {
+              const double along = axis == 1 ? 1.25 : 1.0, across = axis == 2 ? 1.25 : 1.0;
+              for (int i = 0; i < run.n(); i++) {
+                double *const F = run.points().F[i];
+                F[0] = along * c * c + across * s * s;
+                F[1] = F[3] = (along - across) * c * s;
+                F[4] = along * s * s + across * c * c;
+              }
+            }
+            run.commands("run 1000\n");
+            const double width = axis == 1 ? 0.8 : axis == 2 ? 1.25 : 1.0;
+            const double q = measured("heat over what ought to go through",
+                                      out(run, 0) / (0.2 * width / (at + (1.0 - at) / 10)));
+            EXPECT_NEAR(q, 1.0, kind == QUADS || !cut ? 1e-4 : n == 8 ? 0.035 : 0.028);
           }
-          run.commands("run 1000\n");
-          const double width = axis == 1 ? 0.8 : axis == 2 ? 1.25 : 1.0;
-          const double q = measured("heat over what ought to go through",
-                                    out(run, 0) / (0.2 * width / (at + (1.0 - at) / 10)));
-          EXPECT_NEAR(q, 1.0, kind == QUADS || !cut ? 1e-4 : n == 8 ? 0.035 : 0.028);
         }
       }
 }
