@@ -977,6 +977,19 @@ TEST(Tank, FirstTimeStep)
   }
 }
 
+// nothing limits the step of a fluid at rest without weight: it is the largest one, or, without
+// one, stays as it is
+SERIAL_TEST(Tank, StepWithoutLimits)
+{
+  for (const bool largest : {false, true}) {
+    Scene run(plane("si", "f f", "0 8 0 8", 1, 0.3) +
+              "region w block INF 4 INF 6 INF INF\ncreate_points 1 region w spacing 0.5\n"
+              "fix w all mpm/incompressible 1 2.0\nfix dt all mpm/dt 0.7 every 1" +
+              (largest ? " max 3" : "") + "\ntimestep 0.25\nrun 0\n");
+    EXPECT_EQ(run.lmp->update->dt, largest ? 3.0 : 0.25);
+  }
+}
+
 // what falls goes no farther than a share of a cell in a step, by its speed and its acceleration
 SERIAL_TEST(Block, StepOfAFall)
 {
