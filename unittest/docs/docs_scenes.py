@@ -31,6 +31,7 @@ MATERIAL = "fix default all mpm/material density 1000 eos linear 1.0e6 strength 
 GROUPS = ["bar", "rod", "solid", "solids"]
 REGIONS = {"bar": "block 0.01 0.04 0.01 0.04 0.01 0.04", "ball": "sphere 0.06 0.06 0.06 0.02",
            "plate": "block 0.01 0.09 0.01 0.09 0.01 0.02", "soil": "block -0.02 0.12 0 0.1 0 0.03",
+           "forest": "block 0.06 INF INF INF INF INF", "ice": "block INF 0.02 INF INF INF INF",
            "shell": "cylinder z 0.05 0.05 0.045 INF INF side out", "lid": "plane 0 0.05 0 0 -1 0",
            "inlet": "block 0.07 0.09 0.07 0.09 0.07 0.09", "drain": "block INF 0.025 INF INF INF INF"}
 CORNERS = [(0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9)]
@@ -118,7 +119,7 @@ def examples(path):
 def mentions(line, kind, name):
     """Does a command use this ID?"""
     pattern = {"compute": r"\bc_%s\b", "fix": r"\bf_%s\b|\bfix %s\b", "variable": r"\bv_%s\b",
-               "region": r"\b(?:region|mpm/rigid|implicit yes stick) %s\b"}.get(kind, r"(?<!_)\b%s\b")
+               "region": r"\b(?:region|patch|mpm/rigid|implicit yes stick) %s\b"}.get(kind, r"(?<!_)\b%s\b")
     pattern = pattern.replace("%s", re.escape(name))
     words = line.split()
     own = words[0] == kind and words[1] == name
@@ -412,6 +413,8 @@ def write_files(folder, scene):
         file.write(SCAN)
     with open(os.path.join(folder, "terrain.stl"), "w", encoding="ascii") as file:
         file.write(TERRAIN)
+    with open(os.path.join(folder, "valley.asc"), "w", encoding="ascii") as file:
+        file.write("ncols 2\nnrows 2\nxllcorner 512299\nyllcorner 5100199\ncellsize 1\n0.02 0.01\n0.02 0.01\n")
     with open(os.path.join(folder, "hare.obj"), "w", encoding="ascii") as file:
         file.write("".join("v %d %d %d\n" % corner for corner in CORNERS) +
                    "".join("f %d %d %d\n" % tuple(k + 1 for k in face) for face in FACES))

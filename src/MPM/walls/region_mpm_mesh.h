@@ -16,15 +16,11 @@ RegionStyle(mpm/mesh,RegMPMMesh);
 #define LMP_REGION_MPM_MESH_H
 
 #include "declare/option.h"
+#include "mesh/surface_cells.h"
 #include "region.h"
 
 #include <map>
 #include <memory>
-
-namespace MPM_NS {
-class SurfaceCells;
-class SurfaceMesh;
-}    // namespace MPM_NS
 
 namespace LAMMPS_NS {
 
