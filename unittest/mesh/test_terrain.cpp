@@ -90,6 +90,34 @@ SERIAL_TEST(SurfaceCells, LeaveEdgesToTheMesh)
   }
 }
 
+// Across a blunt ridge, normals have nearly the same direction, and the cells leave it to the mesh, too.
+SERIAL_TEST(SurfaceCells, LeaveRidgesToTheMesh)
+{
+  const double slope = 0.25, size = 0.1;    // 28 degrees between the normals
+  std::string heights;
+  for (const double x : {-4.0, 0.0, 4.0})
+    for (const double y : {-4.0, 4.0}) heights += strprintf("%g %g %g\n", x, y, -slope * fabs(x));
+  MPM_NS::SurfaceOptions open;
+  open.open = true;
+  const SurfaceMesh mesh(heights, "ridge.xyz", 1.0, {0.0, 0.0, 0.0}, open);
+  SurfaceCells cells(mesh, size, false);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  int known = 0, unknown = 0;
+  for (int n = 0; n < 3000; n++) {
+    const Point x = {0.2 * any(random), any(random), 0.3 * any(random)};
+    Point closest;
+    double d;
+    const auto answer = cells.find(x, d, nullptr);
+    if (answer == SurfaceCells::UNKNOWN) unknown++;
+    if (answer != SurfaceCells::KNOWN) continue;
+    known++;
+    EXPECT_NEAR(d, mesh.distance(x, closest), 2.0 * SurfaceCells::TOLERANCE * size);
+  }
+  EXPECT_GT(known, 1000);
+  EXPECT_GT(unknown, 100);
+}
+
 /** Heights z = f(x, y) as an ESRI ASCII grid, whose lower left cell has this middle. */
 template <class F>
 static std::string raster(int columns, int rows, double x, double y, double cell, const F &f)
