@@ -72,9 +72,9 @@ const SurfaceCells::Corner &SurfaceCells::corner(Brick &brick, const int64_t *in
   return c;
 }
 
-/** Distance [cells] and gradient at the place t in the cell, from 0 to 1 along each axis. With the corners
- *  k = 0, 1 along each axis, the sum of w_k g_k (x - x_k) is the sum over the axes of g t less that
- *  over the corners with k = 1 of w_k g_k, in cells. The gradient is not normalized. */
+/** Distance [cells] and gradient at the place t in the cell, from 0 to 1 along each axis. With the
+ *  corners k = 0, 1 along each axis, the sum of w_k g_k (x - x_k) is the sum over the axes of g t
+ *  less that over the corners with k = 1 of w_k g_k, in cells. The gradient is not normalized. */
 std::array<double, 4> SurfaceCells::blend(const Brick &brick, const int *cell,
                                           const double *t) const
 {
@@ -111,6 +111,7 @@ SurfaceCells::Kind SurfaceCells::judge(Brick &brick, const int64_t *index, const
     mean = mean + gradients[k];
   }
   const double length = norm(mean);
+  if (!(length > 0.0)) return ROUGH;
   for (int k = 0; k < n; k++)
     if (!(dot(mean, gradients[k]) >= SAME * length)) return ROUGH;
   Point x = {0.0, 0.0, height}, closest;

@@ -39,13 +39,10 @@ class SurfaceCells {
   /** Farthest places from the surface for which there are cells, in cells. */
   static constexpr double FARTHEST = 12.0;
 
-  /** KNOWN: distance of x, negative inside, and its gradient (if not
-   *  null), a unit vector. FAR: x is at least at
-   *  this distance, and there is no gradient. UNKNOWN: the surface is not smooth. */
+  /** KNOWN: distance of x, negative inside, and its gradient (if not null), a unit vector. FAR: x
+   *  is at least at this distance, and there is no gradient. UNKNOWN: the surface is not smooth. */
   enum Answer : char { UNKNOWN, KNOWN, FAR };
   Answer find(const SurfaceMesh::Point &x, double &distance, SurfaceMesh::Point *gradient);
-
-  double memory_usage() const { return (double) bricks.size() * sizeof(Brick); }
 
  private:
   static constexpr int SIDE = 8, CORNERS = SIDE + 1;    // of bricks

@@ -28,7 +28,7 @@ using Point = std::array<double, 3>;
   throw std::runtime_error("File " + name + what);
 }
 
-static std::string lower_case(std::string text)
+std::string MPM_NS::lower_case(std::string text)
 {
   for (auto &c : text) c = (char) tolower((unsigned char) c);
   return text;

@@ -8,6 +8,8 @@
 
 #include "mesh/terrain_file.h"
 
+#include "mesh/surface_file.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -24,12 +26,6 @@ using Point = std::array<double, 3>;
 
 static constexpr double MISSING = std::numeric_limits<double>::quiet_NaN();
 static constexpr double SAME = 1.0e-6;    // of the width of the terrain: round-off of coordinates
-
-static std::string lower_case(std::string text)
-{
-  for (auto &c : text) c = (char) tolower((unsigned char) c);
-  return text;
-}
 
 static std::string end_of(const std::string &name)
 {

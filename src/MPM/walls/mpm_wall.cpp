@@ -19,6 +19,7 @@
 #include "update.h"
 #include "walls/mpm_region_surface.h"
 #include "walls/mpm_wall_gap.h"
+#include "walls/region_mpm_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +50,34 @@ void MPMWall::find_patches()
                  "Region {} for keyword patch of fix mpm/boundary {} must not move", part.region_id,
                  id);
     part.region->prematch();
+    if (comm->me == 0 && !may_meet(*part.region))
+      error->warning(
+          FLERR,
+          "Fix mpm/boundary {}: its wall is nowhere in region {} of keyword patch, which "
+          "does nothing: let the region go through the wall, e.g. with INF across it",
+          id, part.region_id);
   }
+}
+
+/** Can the wall be in this region? True if it is not known: only boxes around them are compared. */
+bool MPMWall::may_meet(const Region &part) const
+{
+  if (!part.bboxflag) return true;
+  const double low[3] = {part.extent_xlo, part.extent_ylo, part.extent_zlo},
+               high[3] = {part.extent_xhi, part.extent_yhi, part.extent_zhi};
+  for (int d = 0; d < domain->dimension; d++)
+    if (low[d] > domain->boxhi[d] || high[d] < domain->boxlo[d]) return false;
+  if (!face_list.empty())
+    return std::any_of(face_list.begin(), face_list.end(), [&](int face) {
+      const double at = face % 2 ? domain->boxhi[face / 2] : domain->boxlo[face / 2];
+      return low[face / 2] <= at && at <= high[face / 2];
+    });
+  const auto *mesh = dynamic_cast<RegMPMMesh *>(region);
+  if (!mesh || region->dynamic_check()) return true;
+  const auto &surface_box = mesh->surface_mesh();
+  for (int d = 0; d < domain->dimension; d++)
+    if (low[d] > surface_box.hi[d] || high[d] < surface_box.lo[d]) return false;
+  return true;
 }
 
 double MPMWall::friction_at(const double *x) const
@@ -77,12 +105,12 @@ void MPMWall::init_region()
   motion_step = -1;
   placed = false;
   steps = 0;
-  find_patches();
-  if (region_id.empty()) return;
+  if (region_id.empty()) return find_patches();
   region = domain->get_region_by_id(region_id);
   if (!region)
     error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/boundary does not exist",
                region_id);
+  find_patches();
   surface = std::make_unique<MPMRegionSurface>(region, domain->dimension);
   double h = fields[0]->lattice.h;
   for (const auto *field : fields) h = std::min(h, field->lattice.h);

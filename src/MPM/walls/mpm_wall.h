@@ -31,7 +31,8 @@ struct MPMBoundaryOptions {
 
   Kind kind = STICK;
   double friction = 0.0;
-  /** Coefficients of friction where the wall is in a region; the last one that has a place counts. */
+  /** Another coefficient of friction where the wall is in a region; of several that have a place,
+   *  the last one counts. */
   struct Patch {
     std::string region_id;
     double friction = 0.0;
@@ -195,6 +196,7 @@ class MPMWall : protected Pointers, public MPMBoundaryOptions {
 
   void check_speed(double dt);
   void find_patches();
+  bool may_meet(const Region &) const;
 };
 
 }    // namespace LAMMPS_NS

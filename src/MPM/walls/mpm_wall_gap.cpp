@@ -108,7 +108,7 @@ double MPMWallGap::Sums::beyond(const MPMContactDistance &full) const
   return distance / volume - full.distance(size / volume);
 }
 
-/** Of the middle of a block whose points are out of reach. */
+/** Of places as far from points that are out of reach as the middle of their block. */
 double MPMWallGap::farthest(const MPMField &field, double more)
 {
   const auto &lattice = field.lattice;

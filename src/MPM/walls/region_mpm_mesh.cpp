@@ -203,14 +203,15 @@ void RegMPMMesh::init()
   if (!mesh->open || warned || dynamic || comm->me != 0) return;
   const double *const lo = domain->boxlo, *const hi = domain->boxhi;
   for (int d = 0; d < domain->dimension; d++) {
-    if (mesh->lo[d] <= hi[d] && mesh->hi[d] >= lo[d]) continue;
+    const double from = mesh->lo[d], to = mesh->hi[d];
+    if (from <= hi[d] && to >= lo[d]) continue;
     warned = true;
     error->warning(
         FLERR,
         "The open surface of region {} is outside of the box: along {} it goes from "
         "{:.8g} to {:.8g}, and the box from {:.8g} to {:.8g}. Look at its scale and origin, "
         "which in a map can be far away",
-        id, "xyz"[d], mesh -> lo[d], mesh -> hi[d], lo[d], hi[d]);
+        id, "xyz"[d], from, to, lo[d], hi[d]);
     return;
   }
   for (const auto &x : mesh->rim) {
@@ -279,9 +280,9 @@ bool RegMPMMesh::distance_in_cells(SurfaceCells &known, const double *x, double 
   SurfaceMesh::Point up;
   const auto answer =
       known.find({place[0], place[1], place[2]}, distance, gradient ? &up : nullptr);
+  if (answer == SurfaceCells::UNKNOWN) return false;
   const bool too_far = std::fabs(distance) >= cutoff;
-  if (answer == SurfaceCells::UNKNOWN || (answer == SurfaceCells::FAR && (gradient || !too_far)))
-    return false;
+  if (answer == SurfaceCells::FAR && (gradient || !too_far)) return false;
   if (!interior) distance = -distance;
   if (too_far) distance = std::copysign(cutoff, distance);
   if (!gradient) return true;
