@@ -42,6 +42,15 @@ static constexpr double LONG = 100.0;
 static constexpr int DO_WELL = 40;    // iterations with the preconditioner of other values
 static constexpr double ROUND_OFF = 4.0e-16;
 
+void MPMDiffusion::add_diagonal_of(int n, const int64_t *nodes, int ngrad, const double *gradient,
+                                   const double *stiffness, std::vector<double> &diagonal)
+{
+  for (int i = 0; i < n; i++, gradient += ngrad)
+    for (int a = 0; a < ngrad; a++)
+      for (int b = 0; b < ngrad; b++)
+        diagonal[nodes[i]] += gradient[a] * stiffness[ngrad * a + b] * gradient[b];
+}
+
 /** The equations of one part alone, as its levels see them. */
 class MPMDiffusionSolver::OnePart : public LinearSystem {
  public:
@@ -145,15 +154,8 @@ void MPMDiffusionSolver::prepare(double greatest)
   std::vector<double> stiffness;
   for (auto &part : parts) {
     part.diagonal.assign(part.capacity.size(), 0.0);
-    equations.each_term(
-        k++, implicit_dt,
-        [&](int n, const int64_t *nodes, int ngrad, const double *gradient, const double *S) {
-          for (int i = 0; i < n; i++, gradient += ngrad)
-            for (int a = 0; a < ngrad; a++)
-              for (int b = 0; b < ngrad; b++)
-                part.diagonal[nodes[i]] +=
-                    implicit_dt * gradient[a] * S[ngrad * a + b] * gradient[b];
-        });
+    equations.add_diagonal(k++, implicit_dt, part.diagonal);
+    for (double &d : part.diagonal) d *= implicit_dt;
     part.field.nodes.sum(part.diagonal.data(), 1, 0, 1);
     part.field.nodes.complete(part.diagonal.data(), 1, 1);
     for (std::size_t i = 0; i < part.capacity.size(); i++)
@@ -184,13 +186,29 @@ double MPMDiffusionSolver::find_residual()
 {
   for (auto &part : parts) part.scalar.value = part.at;
   equations.find_rates();
-  for (auto &part : parts) {
-    part.field.nodes.complete(part.scalar.rate.data(), 1, 1);
+  for (auto &part : parts) part.field.nodes.complete(part.scalar.rate.data(), 1, 1);
+  return residual_of_rates();
+}
+
+/** The same with the rates that are known at these values. */
+double MPMDiffusionSolver::residual_of_rates()
+{
+  for (const auto &part : parts)
     for (std::size_t i = 0; i < part.capacity.size(); i++)
       residual[part.first + i] =
           part.capacity[i] * (part.base[i] + implicit_dt * part.scalar.rate[i] - part.at[i]);
-  }
   return std::sqrt(product(residual.data(), residual.data()));
+}
+
+/** Size of the first correction, times capacities, as the preconditioner finds it. The residual
+ *  itself is much larger where values decay much faster than in a step. */
+double MPMDiffusionSolver::expected_change()
+{
+  precondition(residual.data(), correction.data());
+  for (const auto &part : parts)
+    for (std::size_t i = 0; i < part.capacity.size(); i++)
+      correction[part.first + i] *= part.capacity[i];
+  return std::sqrt(product(correction.data(), correction.data()));
 }
 
 /** Of capacities times values, or times their change since the start of the stage. */
@@ -203,17 +221,17 @@ double MPMDiffusionSolver::size_of_values(bool of_change)
   return std::sqrt(product(list.data(), list.data()));
 }
 
-/** The values of a stage, from those that are there; its rates are there in the end. */
-bool MPMDiffusionSolver::solve(double greatest, double fastest)
+/** The values of a stage, from those that are there; its rates are there in the end.
+ *  rates_known: they are there at the start. */
+bool MPMDiffusionSolver::solve(double greatest, double fastest, bool rates_known)
 {
   residual.assign(size(), 0.0);
   correction.assign(size(), 0.0);
-  double left = find_residual(), best = left;
+  double left = rates_known ? residual_of_rates() : find_residual(), best = left;
   int worse = 0;
   for (int iteration = 0;; iteration++) {
     const double floor = ROUND_OFF * (1.0 + implicit_dt * fastest) * size_of_values(false);
-    const double change = iteration ? size_of_values(true) : left;
-    const double enough = std::max(options.tolerance * change, floor);
+    double enough = std::max(options.tolerance * (iteration ? size_of_values(true) : left), floor);
     if (!std::isfinite(left)) {
       now.failure = "values are not finite";
       return false;
@@ -227,6 +245,7 @@ bool MPMDiffusionSolver::solve(double greatest, double fastest)
     const bool made = !prepared;
     if (made) prepare(greatest);
     prepared = true;
+    if (iteration == 0) enough = std::max(options.tolerance * expected_change(), floor);
     SolveGoal goal;
     goal.relative = 0.0;
     goal.absolute = 0.5 * enough;
@@ -274,7 +293,7 @@ const MPMDiffusionSolver::Report &MPMDiffusionSolver::advance(double dt, double 
   for (int stage = 0; stage < (euler ? 1 : 2) && now.converged; stage++) {
     const double weight = (euler ? 1.0 : (stage ? G : 1.0 - G)) * dt;
     implicit_dt = (euler ? 1.0 : G) * dt;
-    now.converged = solve(greatest, fastest);
+    now.converged = solve(greatest, fastest, stage > 0);
     for (auto &part : parts)
       for (std::size_t i = 0; i < part.capacity.size(); i++)
         part.base[i] += weight * part.scalar.rate[i];

@@ -48,8 +48,13 @@ class MPMDiffusion {
   /** Terms of a part from this rank, for a preconditioner; prescribed values are stiff. dt: of the
    *  implicit equations. */
   virtual void each_term(int part, double dt, const Term &) = 0;
+  /** Adds the diagonal of the sum of these terms. */
+  virtual void add_diagonal(int part, double dt, std::vector<double> &diagonal) = 0;
 
  protected:
+  /** Adds the diagonal of a term. */
+  static void add_diagonal_of(int n, const int64_t *nodes, int ngrad, const double *gradient,
+                              const double *stiffness, std::vector<double> &diagonal);
   ~MPMDiffusion() = default;    // owned and deleted as something else
 };
 
@@ -136,8 +141,10 @@ class MPMDiffusionSolver : private MPM_NS::LinearSystem {
   void products(int n, const double *const *a, const double *const *b, double *value) override;
 
   void prepare(double greatest);
-  bool solve(double greatest, double fastest);
+  bool solve(double greatest, double fastest, bool rates_known);
   double find_residual();
+  double residual_of_rates();
+  double expected_change();
   double size_of_values(bool of_change);
 
   class OnePart;    // the equations of one part, for its multigrid levels

@@ -159,7 +159,7 @@ void MPMNodeScalar::add_terms(int terms, const GiveValues &capacities, std::vect
 void MPMNodeScalar::sum_rates()
 {
   sum(rate);
-  kernels.divide(rate.data(), capacity.data(), rate.size());
+  divide(rate);
 }
 
 void MPMNodeScalar::find_rates(const Conduct &conduct, const std::function<void()> &more)

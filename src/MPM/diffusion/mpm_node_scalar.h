@@ -99,6 +99,11 @@ class MPMNodeScalar {
   void find_rates_along(const Factors &);
   /** Sums the rates over ranks and divides them by capacities; called by the user with is_level. */
   void sum_rates();
+  /** Divides sums at nodes by the capacities. */
+  void divide(std::vector<double> &sums) const
+  {
+    kernels.divide(sums.data(), capacity.data(), sums.size());
+  }
   /** Bound of the eigenvalues of the negative rates on this rank, from the rows of their matrix
    *  [1/time]; not with domains. bound: out: V_p sum_e |k_de| for each axis d, with the tensor k of
    *  a linear flux. add_rows() stores the rows in rate, and greatest_row() is called after it; for

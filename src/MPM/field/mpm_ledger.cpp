@@ -9,6 +9,7 @@
 #include "field/mpm_ledger.h"
 
 #include "atom.h"
+#include "domain.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
 #include "field/mpm_interfaces.h"
@@ -19,26 +20,33 @@
 #include "field/mpm_time_limit.h"
 #include "force.h"
 #include "math/matrix.h"
+#include "update.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-void MPMLedger::nodal_kinetic_energies(double &old, double &now) const
+MPMLedger::NodeSums MPMLedger::sums_over_nodes() const
 {
   const Grid &grid = field.grid;
   const double *record = field.grid.nodes();
-  double before = 0.0, after = 0.0;
+  NodeSums sums;
   for (const auto &block : grid.blocks) {
     for (int n = 0; n < NODES_PER_BLOCK; n++, record += 8) {
       if (!(block.owned >> n & 1)) continue;
-      before += record[3] * dot(record + 4, record + 4);
-      after += record[3] * dot(record, record);
+      const double m = record[3];
+      sums.mass += m;
+      sums.old_energy += m * dot(record + 4, record + 4);
+      sums.energy += m * dot(record, record);
+      for (int d = 0; d < 3; d++) sums.momentum[d] += 0.5 * m * (record[d] + record[4 + d]);
     }
   }
-  old = 0.5 * force->mvv2e * before;
-  now = 0.5 * force->mvv2e * after;
+  sums.old_energy *= 0.5 * force->mvv2e;
+  sums.energy *= 0.5 * force->mvv2e;
+  return sums;
 }
 
 double MPMLedger::point_kinetic_energy() const
@@ -55,19 +63,102 @@ double MPMLedger::point_kinetic_energy() const
 
 void MPMLedger::account_for_nodes()
 {
-  account_for_forces();
-  note_starts();
-  double old, kinetic;
-  nodal_kinetic_energies(old, kinetic);
-  transfer += old - kinetic_points;
-  kinetic_points = kinetic;
+  const NodeSums sums = sums_over_nodes();
+  common = finds_common_acceleration(sums);
+  account_for_forces(sums);
+  transfer += sums.old_energy - kinetic_points;
+  kinetic_points = sums.energy;
+}
+
+/** Have all points the same acceleration by the forces on them, as by gravity or without any, and
+ *  is nothing else put on the nodes? Not in the first steps, and in some later ones, in which the
+ *  accounts are checked. Collective. */
+bool MPMLedger::finds_common_acceleration(const NodeSums &sums)
+{
+  static constexpr bigint FIRST = 64, OFTEN = 32;    // of steps with a check
+  static constexpr double ROUND_OFF = 1.0e-12;
+  const bigint step = update->ntimestep;
+  if (step < FIRST || step % OFTEN == 0 || at_points || !field.time_limit->bound || !field.elements.empty() ||
+      !field.plan->added_stresses.empty())
+    return false;
+  // of the first point on a rank, and its negative; how much forces differ from it, and their size
+  constexpr int N = 6;
+  double of_rank[N], greatest[N], sums_of_rank[4] = {0.0, 0.0, 0.0, sums.mass}, total[4], a[3] = {};
+  std::fill_n(of_rank, N, -std::numeric_limits<double>::max());
+  const PointRows r = field.rows();
+  if (const auto &runs = field.map->runs; !runs.empty()) {
+    const int i = runs[0].first;
+    for (int d = 0; d < 3; d++) {
+      of_rank[d] = a[d] = r.f[3 * (bigint) i + d] / r.mass[i];
+      of_rank[3 + d] = -a[d];
+    }
+  }
+  for (const auto &run : field.map->runs) {
+    double differ = 0.0, mass = 0.0;
+    for (int i = run.first; i < run.last; i++) {
+      const double *const f = r.f + 3 * (bigint) i, m = r.mass[i];
+      mass += m;
+      differ += std::fabs(f[0] - m * a[0]) + std::fabs(f[1] - m * a[1]) + std::fabs(f[2] - m * a[2]);
+    }
+    sums_of_rank[0] += differ;
+    sums_of_rank[1] += mass * (std::fabs(a[0]) + std::fabs(a[1]) + std::fabs(a[2]));
+    sums_of_rank[2] += mass;
+  }
+  MPI_Allreduce(of_rank, greatest, N, MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(sums_of_rank, total, 4, MPI_DOUBLE, MPI_SUM, world);
+  double most = 0.0;
+  for (double g : greatest) most = std::max(most, std::fabs(g));
+  // with other physics, nodes can have other masses than those of the points
+  bool same = total[0] <= ROUND_OFF * total[1] &&
+      std::fabs(total[2] - total[3]) <= ROUND_OFF * total[2];
+  for (int d = 0; d < 3; d++) {
+    same = same && greatest[d] + greatest[3 + d] <= ROUND_OFF * most;
+    acceleration[d] = 0.5 * (greatest[d] - greatest[3 + d]);
+  }
+  return same;
+}
+
+/** Places relative to the middle of the box, for the sake of digits. */
+MPMLedger::PointSums MPMLedger::sums_along_acceleration() const
+{
+  const int dim = field.lattice.dim;
+  double middle[3], a[3];
+  for (int d = 0; d < 3; d++) {
+    middle[d] = 0.5 * (domain->boxlo[d] + domain->boxhi[d]);
+    a[d] = d < dim ? acceleration[d] : 0.0;
+  }
+  PointSums sums;
+  const double *const m = atom->rmass;
+  for (const auto &run : field.map->runs)
+    for (int i = run.first; i < run.last; i++) {
+      const double *const x = atom->x[i];
+      sums.place +=
+          m[i] * (a[0] * (x[0] - middle[0]) + a[1] * (x[1] - middle[1]) + a[2] * (x[2] - middle[2]));
+      sums.velocity += m[i] * dot(a, atom->v[i]);
+    }
+  return sums;
+}
+
+/** Work of the forces on points (atom->f) and of their stress on the nodes. */
+void MPMLedger::account_for_forces(const NodeSums &sums)
+{
+  if (!common) {
+    account_at_points();
+    note_starts();
+    return;
+  }
+  const TransferStep s = field.step_data();
+  work_at_nodes = force->mvv2e * s.dt * s.force_scale * dot(acceleration, sums.momentum);
+  internal += work_at_nodes + (spent() - spent_before) - (sums.energy - sums.old_energy);
+  external += work_at_nodes;
+  if (work_at_nodes != 0.0) before_motion = sums_along_acceleration();
 }
 
 /** Work of forces counts on the way that points go, see work_on_points(). The nodes have got another
  *  work from them, because transfers smooth the old velocities: the difference is theirs. */
 void MPMLedger::account_for_points()
 {
-  if (!starts.empty()) {
+  if (common || !starts.empty()) {
     const double work = work_on_points();
     external += work - work_at_nodes;
     transfer -= work - work_at_nodes;
@@ -111,7 +202,7 @@ double MPMLedger::stress_power(PointRows &rows, int first, int n, const double *
 /** Work of the forces on points (atom->f) and of their stress, at the mean of the old and the final
  *  velocity of the nodes, which go to the points by the weights and gradients with which P2G has
  *  brought the forces to the nodes. What elements put on atom->f is internal. */
-void MPMLedger::account_for_forces()
+void MPMLedger::account_at_points()
 {
   field.nodes.complete_velocities();
   PointRows r = field.rows();
@@ -171,6 +262,12 @@ void MPMLedger::note_starts()
 double MPMLedger::work_on_points() const
 {
   const double half = 0.5 * field.step_dt();
+  if (common) {
+    if (work_at_nodes == 0.0) return 0.0;
+    const PointSums now = sums_along_acceleration();
+    return force->mvv2e * force->ftm2v *
+        (now.place - before_motion.place - half * (now.velocity - before_motion.velocity));
+  }
   const double *const f = field.rows().f;
   double sum = 0.0;
   for (const auto &run : field.map->runs)

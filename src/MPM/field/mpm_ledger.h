@@ -36,7 +36,8 @@ struct MPMEnergies {
 /** Energy accounts of a field. Each account is a sum of its own: works are forces or impulses times
  *  velocities, and transfers are differences of kinetic energies before and after. No account is
  *  found as the remainder of the others, so their balance is a check; see "The ledger" in the
- *  developer guide. */
+ *  developer guide. Where forces on points are an acceleration that all have in common, this check
+ *  is made in some of the steps only: in the others, the work of stress is what nodes lose. */
 class MPMLedger : protected Pointers, public MPMEnergies {
  public:
   bool on = false;    ///< a compute mpm/energy exists; set in init()
@@ -54,7 +55,15 @@ class MPMLedger : protected Pointers, public MPMEnergies {
     if (on) kinetic_points = point_kinetic_energy();
   }
   /** Called after the momentum equation, before node actions. */
-  void nodes_solved() { impulses.clear(); }
+  void nodes_solved()
+  {
+    impulses.clear();
+    at_points = false;
+    spent_before = spent();
+  }
+  /** Something has changed the velocities of nodes in this step that no account has. To be called on
+   *  all ranks. */
+  void count_at_points() { at_points = true; }
   /** Accounts for the work of forces and kinetic energies, before points receive the changes at the
    *  nodes. */
   void account_for_nodes();
@@ -88,9 +97,13 @@ class MPMLedger : protected Pointers, public MPMEnergies {
    *  are due to further terms of a series. */
   void count_series(const std::vector<double> &velocities);
 
-  /** Kinetic energies of the nodes that this rank owns, with the velocities before the momentum
-   *  equation and with the present ones. */
-  void nodal_kinetic_energies(double &old, double &now) const;
+  /** Sums over the nodes that this rank owns, with the velocities before the momentum equation and
+   *  with the present ones. */
+  struct NodeSums {
+    double old_energy = 0.0, energy = 0.0;    ///< kinetic
+    double mass = 0.0, momentum[3] = {};      ///< of the mean of both velocities
+  };
+  NodeSums sums_over_nodes() const;
   /** Kinetic energy of this rank's points [energy]. */
   double point_kinetic_energy() const;
 
@@ -102,10 +115,23 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   // of forces in this step, at the mean of the old and the new velocity of the nodes
   double work_at_nodes = 0.0;
   std::vector<double> starts;    // [point][6] place and velocity before points move; empty: none
+  double spent_before = 0.0;     // spent() before node actions
+  // acceleration that all points have in common in this step, by the forces on them, and before
+  // points move the sum of their masses times the place along it, and of their momenta
+  bool common = false, at_points = false;    // at_points: see count_at_points()
+  double acceleration[3] = {};
+  struct PointSums {
+    double place = 0.0, velocity = 0.0;
+  } before_motion;
 
   double *impulse(const double *record);
   static bool change_by(double *record, const double *impulse, double change[3]);
-  void account_for_forces();
+  /** What the accounts say that nodes have gained. */
+  double spent() const { return external + boundary + contact + transfer - internal; }
+  bool finds_common_acceleration(const NodeSums &);
+  PointSums sums_along_acceleration() const;
+  void account_for_forces(const NodeSums &);
+  void account_at_points();
   void note_starts();
   double work_on_points() const;
   double stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;

@@ -59,6 +59,28 @@ class MPMStencil {
     return evaluate<MPM_NS::BSpline<2>>(t, first, w, nullptr);
   }
 
+  /** Nodes along the axes that a place x reaches, and the functions there of point i or, if points
+   *  have domains, of a corner: the first node, their number, weights, and their slopes per node
+   *  spacing. */
+  void along_axes(int i, const double *x, int first[3], int count[3], double w[3][4],
+                  double dw[3][4]) const
+  {
+    for (int d = 0; d < 3; d++) {
+      first[d] = 0;
+      count[d] = 1;
+      w[d][0] = 1.0;
+      dw[d][0] = 0.0;
+    }
+    for (int d = 0; d < field.lattice.dim; d++) {
+      const double t = (x[d] - field.lattice.origin[d]) / field.lattice.h;
+      count[d] = weights(t, first[d], w[d], dw[d]);
+      if (!field.boxes) continue;
+      const double size = field.boxes->sizes[3 * (std::size_t) i + d];
+      MPM_NS::Gimp::weights(t - MPM_NS::Gimp::shift - first[d], size, w[d]);
+      MPM_NS::Gimp::gradients(t - MPM_NS::Gimp::shift - first[d], size, dw[d]);
+    }
+  }
+
   /** Calls f(Node) for all nodes of point i, which is in the given block. */
   template <class F> void visit(const MPM_NS::Grid::Block &block, int i, const F &f) const
   {
@@ -74,18 +96,13 @@ class MPMStencil {
     if (field.domains) field.domains->corners_of(i, corner, share, slope);
 
     for (int c = 0; c < ncorner; c++) {
-      int base[3] = {0, 0, 0}, count[3] = {1, 1, 1}, k[3];
-      double at[3] = {0.0, 0.0, 0.0}, w[3][4] = {{0.0}, {0.0}, {1.0}}, dw[3][4] = {{0.0}};
+      int base[3], count[3], k[3];
+      double x[3] = {0.0, 0.0, 0.0}, at[3] = {0.0, 0.0, 0.0}, w[3][4], dw[3][4];
       for (int d = 0; d < dim; d++) {
-        const double x = field.domains ? place[d] + corner[dim * c + d] : place[d];
-        const double t = (x - lattice.origin[d]) / lattice.h;
+        x[d] = field.domains ? place[d] + corner[dim * c + d] : place[d];
         at[d] = (place[d] - lattice.origin[d]) / lattice.h;
-        count[d] = weights(t, base[d], w[d], dw[d]);
-        if (!field.boxes) continue;
-        const double size = field.boxes->sizes[3 * (std::size_t) i + d];
-        MPM_NS::Gimp::weights(t - MPM_NS::Gimp::shift - base[d], size, w[d]);
-        MPM_NS::Gimp::gradients(t - MPM_NS::Gimp::shift - base[d], size, dw[d]);
       }
+      along_axes(i, x, base, count, w, dw);
       Node node;
       for (k[0] = 0; k[0] < count[0]; k[0]++)
         for (k[1] = 0; k[1] < count[1]; k[1]++)

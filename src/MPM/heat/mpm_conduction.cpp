@@ -97,6 +97,7 @@
 #include "heat/mpm_heat_body.h"
 #include "material/material.h"
 #include "math_extra.h"
+#include "solve/bytes_of.h"
 
 #include <algorithm>
 #include <cmath>
@@ -348,6 +349,7 @@ void MPMConduction::add_points(const MPMRows &gradients, bool starts)
   const int dim = field.lattice.dim;
   const bool relaxes = transfer.kind == MPMHeatTransfer::RELAX;
   ranges.clear();
+  wanted = made = false;
   at_start = relaxes && starts && !faces.any() ? TO_BE_SEEN : OF_NODES;
   if (at_start == TO_BE_SEEN) seen.resize(atom->nmax);
   simple = !total && steepest > 0.0;
@@ -447,11 +449,9 @@ bool MPMConduction::is_plain() const
 void MPMConduction::conduct(const Thermal &t, int first, int n, MPMNodeScalar::Rows q,
                             Left left) const
 {
-  const double *const V = volumes.data() + first;
-  const double *const share = shares.empty() || left == ALL ? nullptr : shares.data() + first;
   Conduction buffer;
   for (int p = 0; p < n; p++) {
-    const double conducting = share ? V[p] * share[p] : V[p];
+    const double conducting = conducting_volume(first + p, left);
     if (total || t.all.orthotropic) {
       double k[3][3], flux[3];
       tensor(t, first + p, k);
@@ -494,32 +494,70 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
   std::vector<int64_t> nodes;
   std::vector<double> gradients;
   const auto give = [&](const Thermal &t, int i, double times, Left left) {
-    double stiffness[9];
-    for (int column = 0; column < dim; column++) {
-      double q[1][4] = {};
-      q[0][column] = -times;
-      conduct(t, i, 1, q, left);
-      for (int d = 0; d < dim; d++) stiffness[dim * d + column] = q[0][d];
+    double k[3][3], stiffness[9];
+    if (total || t.all.orthotropic) {
+      times *= conducting_volume(i, left);
+      tensor(t, i, k);
+    } else {
+      double q[3][4] = {};
+      for (int column = 0; column < dim; column++) {
+        q[column][column] = -1.0;
+        conduct(t, i, 1, q + column, left);
+        for (int d = 0; d < dim; d++) k[d][column] = q[column][d];
+      }
     }
+    for (int d = 0; d < dim; d++)
+      for (int e = 0; e < dim; e++) stiffness[dim * d + e] = times * k[d][e];
     use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
-    nodes.clear();
-    gradients.clear();
   };
+  const double per_spacing = 1.0 / field.lattice.h;
+  int last[3] = {}, last_slot = -1;
   each_point(field, [&](const auto &run, int i) {
     const Thermal *const t = thermal(run.material);
     if (!t || (cuts.any() && cuts.is_cut[i])) return;
-    stencil.visit(field.grid.blocks[run.slot], i, [&](const MPMStencil::Node &node) {
-      std::size_t k = nodes.size();
-      if (field.domains) k = std::find(nodes.begin(), nodes.end(), node.number) - nodes.begin();
-      if (k == nodes.size()) {
-        nodes.push_back(node.number);
-        gradients.resize(gradients.size() + dim, 0.0);
-      }
-      for (int d = 0; d < dim; d++) gradients[dim * k + d] += node.gradient[d];
-    });
+    const auto &block = field.grid.blocks[run.slot];
+    if (field.domains) {
+      nodes.clear();
+      gradients.clear();
+      stencil.visit(block, i, [&](const MPMStencil::Node &node) {
+        const std::size_t k =
+            std::find(nodes.begin(), nodes.end(), node.number) - nodes.begin();
+        if (k == nodes.size()) {
+          nodes.push_back(node.number);
+          gradients.resize(gradients.size() + dim, 0.0);
+        }
+        for (int d = 0; d < dim; d++) gradients[dim * k + d] += node.gradient[d];
+      });
+    } else {
+      int first[3], n[3], k[3];
+      double w[3][4], dw[3][4];
+      stencil.along_axes(i, field.frame->places()[i], first, n, w, dw);
+      const bool same = run.slot == last_slot && std::equal(first, first + 3, last);
+      last_slot = run.slot;
+      std::copy_n(first, 3, last);
+      if (!same) nodes.clear();
+      gradients.resize((std::size_t) dim * n[0] * n[1] * n[2]);
+      double *at = gradients.data();
+      for (k[0] = 0; k[0] < n[0]; k[0]++)
+        for (k[1] = 0; k[1] < n[1]; k[1]++) {
+          const double w01 = per_spacing * w[0][k[0]] * w[1][k[1]],
+                       along_0 = per_spacing * dw[0][k[0]] * w[1][k[1]],
+                       along_1 = per_spacing * w[0][k[0]] * dw[1][k[1]];
+          for (k[2] = 0; k[2] < n[2]; k[2]++, at += dim) {
+            at[0] = along_0 * w[2][k[2]];
+            at[1] = along_1 * w[2][k[2]];
+            if (dim == 3) at[2] = w01 * dw[2][k[2]];
+            if (same) continue;
+            const int index[3] = {first[0] + k[0], first[1] + k[1], first[2] + k[2]};
+            nodes.push_back(field.grid.locate_near(block, index));
+          }
+        }
+    }
     give(*t, i, 1.0, AS_SHARES);
   });
   for (const auto &part : cuts.parts) {
+    nodes.clear();
+    gradients.clear();
     cuts.each_node(part, [&](int node, const double *slope) {
       nodes.push_back(node);
       gradients.insert(gradients.end(), slope, slope + dim);
@@ -528,8 +566,53 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
   }
 }
 
+void MPMConduction::expect_rates(int number)
+{
+  // with more, the matrix and rates from it take less time than rates from points
+  const int few = field.lattice.dim == 3 ? 16 : 8;
+  wanted = number > few && !field.domains && !scalar.is_level;
+}
+
+/** Conductivities and places of points do not change in a step. */
+void MPMConduction::make_matrix()
+{
+  matrix.begin(field.grid, stencil_order(field.options.shape));
+  each_term([this](int n, const int64_t *nodes, int ngrad, const double *G, const double *K) {
+    matrix.add_point(n, nodes, ngrad, G, K);
+  });
+  matrix.finish();
+  rate_by_sources.clear();
+  made = true;
+}
+
+void MPMConduction::add_sources(const double *source, Heats &power)
+{
+  if (rate_by_sources.empty()) {
+    power_of_sources = 0.0;
+    scalar.add_up(
+        [&](const MPMPointMap::Run &, int first, int n, double *of_points) {
+          double sum = 0.0;
+          for (int p = 0; p < n; p++) sum += of_points[p] = volumes[first + p] * source[first + p];
+          power_of_sources += sum;
+        },
+        rate_by_sources);
+    scalar.divide(rate_by_sources);
+  }
+  for (std::size_t k = 0; k < rate.size(); k++) rate[k] += rate_by_sources[k];
+  power[SOURCES] += power_of_sources;
+}
+
 void MPMConduction::find_rates(const double *source, Heats &power)
 {
+  if (wanted && at_start != TO_BE_SEEN) {
+    if (!made) make_matrix();
+    field.nodes.complete(temperature.data(), 1, 1);
+    matrix.multiply(temperature.data(), rate.data());
+    for (double &r : rate) r = -r;
+    scalar.sum_rates();
+    if (source) add_sources(source, power);
+    return;
+  }
   const auto see = [&](int first, int n, const MPMNodeScalar::Rows q) {
     for (int p = 0; at_start == TO_BE_SEEN && p < n; p++) seen[first + p] = q[p][3];
   };
@@ -682,7 +765,7 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 double MPMConduction::memory_usage() const
 {
   return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
-      cuts.memory_usage() + idle.capacity() + ends.capacity() * sizeof(double) +
+      cuts.memory_usage() + matrix.memory_usage() + bytes_of(rate_by_sources) + idle.capacity() + ends.capacity() * sizeof(double) +
       capacity_at_faces.capacity() * sizeof(double) +
       (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
       sizeof(double);

@@ -18,6 +18,7 @@
 #include "field/mpm_friction_heat.h"
 #include "heat/mpm_heat_faces.h"
 #include "material/material.h"
+#include "solve/node_matrix.h"
 
 #include <algorithm>
 #include <limits>
@@ -95,11 +96,16 @@ class MPMConduction : protected Pointers {
    *  sources. source: [n] power per volume, or null. Adds the power of sources to power. To be
    *  followed by add_given(). */
   void find_rates(const double *source, Heats &power);
+  /** How often find_rates() will be called in this step. If it is often, rates come from the matrix
+   *  of conduction, except with domains and on several lattices. */
+  void expect_rates(int number);
   /** Adds the rates by heat from other physics (given). */
   void add_given();
   /** Calls the argument with the contribution of each point of this rank to the matrix of
    *  conduction, see MPMDiffusion::Term. */
   void each_term(const MPMDiffusion::Term &) const;
+  /** The matrix of this rank's points, if rates come from it; otherwise null. */
+  const MPM_NS::NodeMatrix *kept_matrix() const { return made ? &matrix : nullptr; }
   /** Transfer relax, before nodes_to_points(): what points of some materials keep decays faster
    *  than what all of them do. Do the materials of the field differ so? The same on all ranks. */
   bool has_faster() const;
@@ -226,6 +232,11 @@ class MPMConduction : protected Pointers {
   // do rates of points follow from capacities and volumes alone; do nodes keep their temperatures
   // of the start of the step?
   bool simple = false, keeps = false;
+  // see expect_rates(); is it wanted, and is it that of this step? Rates by sources in this step
+  MPM_NS::NodeMatrix matrix;
+  bool wanted = false, made = false;
+  std::vector<double> rate_by_sources;
+  double power_of_sources = 0.0;
   struct Range {
     double low, high;
   };
@@ -255,7 +266,13 @@ class MPMConduction : protected Pointers {
   const MPM_NS::Conduction &conduction_of(const Thermal &, int i, MPM_NS::Conduction &buffer) const;
   void find_ranges();
   void tensor(const Thermal &, int i, double k[3][3]) const;
+  void make_matrix();
+  void add_sources(const double *source, Heats &power);
   bool is_plain() const;
+  double conducting_volume(int i, Left left) const
+  {
+    return shares.empty() || left == ALL ? volumes[i] : volumes[i] * shares[i];
+  }
   void conduct(const Thermal &, int first, int n, MPMNodeScalar::Rows q,
                Left left = AS_SHARES) const;
   void conduct_parts();

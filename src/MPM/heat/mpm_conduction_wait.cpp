@@ -166,7 +166,10 @@ void MPMHeatFlow::advance(int stages)
     find_rates();
   };
   find_rates();
-  if (stages > 1 && jumps())
+  const bool jump = stages > 1 && jumps();
+  for (auto &field : fields)
+    if (field->conducts()) field->expect_rates(jump ? 2 * stages : stages);
+  if (jump)
     steps.advance_from_jump(dt_last, limit, rates);
   else
     steps.advance(stages, dt_last, rates, true);

@@ -195,6 +195,27 @@ void MPMHeatFaces::topology_changed()
     }
   }
   find_groups();
+  find_crossing();
+}
+
+/** A line that crosses no other one has its temperature after the first pass of visit_held(). */
+void MPMHeatFaces::find_crossing()
+{
+  if (!crossing) return;
+  std::vector<int> lines(field.grid.nnodes(), 0);    // of a node
+  const auto each_node = [&](const auto &use) {
+    for (auto &face : faces)
+      for (std::size_t k = 0; is_held(face) && k < face.lines.size(); k++)
+        for (int j = 0; j < face.n; j++) use(face, (int) k, lines[face.lines[k].node[j]]);
+  };
+  each_node([](const Face &, int, int &count) {
+    count++;
+  });
+  for (auto &face : faces) face.crossing.clear();
+  each_node([](Face &face, int line, int count) {
+    if (count < 2) return;
+    if (face.crossing.empty() || face.crossing.back() != line) face.crossing.push_back(line);
+  });
 }
 
 /** A rank that has a node of a line has all nodes of it, and so all lines of a group. */
@@ -283,7 +304,7 @@ void MPMHeatFaces::set_up(Group &group) const
   bool any = false;
   for (const auto &member : group.all) {
     member.line->joint = false;
-    const bool held = conditions[member.face->face].kind == MPMHeatCondition::TEMPERATURE;
+    const bool held = is_held(*member.face);
     if (!(member.line->response > 0.0) || (!held && !is_limited(*member.line))) continue;
     lines.push_back(member);
     any = any || !held;
@@ -309,7 +330,7 @@ void MPMHeatFaces::set_up(Group &group) const
 /** R/a of a line, see the top of this file. */
 double MPMHeatFaces::softness(const Face &face, const Line &line) const
 {
-  const bool held = conditions[face.face].kind == MPMHeatCondition::TEMPERATURE;
+  const bool held = is_held(face);
   return line.response *
       (held ? 1.0 / STIFFEST
             : std::clamp(fastest / (line.rate - fastest), 1.0 / STIFFEST, STIFFEST));
@@ -504,14 +525,16 @@ double MPMHeatCondition::slope(double T, double sigma) const
 /** Calls f(face, line) for lines whose temperature is prescribed. */
 template <class F> void MPMHeatFaces::visit_held(const F &f) const
 {
+  for (const auto &face : faces)
+    for (std::size_t k = 0; is_held(face) && k < face.lines.size(); k++)
+      if (face.lines[k].response > 0.0) f(face, face.lines[k]);
+  if (!crossing) return;
   const auto visit = [&](const Face &face) {
-    if (conditions[face.face].kind != MPMHeatCondition::TEMPERATURE) return;
-    for (const auto &line : face.lines)
-      if (line.response > 0.0) f(face, line);
+    for (const int k : face.crossing)
+      if (face.lines[k].response > 0.0) f(face, face.lines[k]);
   };
-  for (int turn = 0; turn < (crossing ? turns : 1); turn++) {
-    for (const auto &face : faces) visit(face);
-    if (!crossing) return;
+  for (int turn = 0; turn < turns; turn++) {
+    for (std::size_t k = 0; turn && k < faces.size(); k++) visit(faces[k]);
     for (auto face = faces.rbegin() + 1; face < faces.rend(); ++face) visit(*face);
   }
 }
@@ -545,7 +568,7 @@ void MPMHeatFaces::each_term(double least, const MPMDiffusion::Term &use) const
 {
   static constexpr double STIFF = 100.0;
   for (const auto &face : faces) {
-    const bool held = conditions[face.face].kind == MPMHeatCondition::TEMPERATURE;
+    const bool held = is_held(face);
     for (const auto &line : face.lines) {
       if (!(line.response > 0.0)) continue;
       int k = 0;
@@ -563,8 +586,7 @@ void MPMHeatFaces::add_rates(bool changes, const std::vector<double> &temperatur
 {
   const auto visit = [&](bool limited, const auto &power_of) {
     for (const auto &face : faces) {
-      const auto &condition = conditions[face.face];
-      if (condition.kind == MPMHeatCondition::TEMPERATURE) continue;
+      if (is_held(face)) continue;
       for (const auto &line : face.lines) {
         if (!(line.area > 0.0) || line.joint || is_limited(line) != limited) continue;
         const double T = line.value(temperature.data());

@@ -134,6 +134,8 @@ class MPMHeatFaces : protected Pointers {
     double weight[NodeLine::MOST];
     double full[NodeLine::MOST];    // volume of the nodes if material fills the box, in cells
     std::vector<Line> lines;
+    // prescribed temperature: lines that have nodes in common with other such lines
+    std::vector<int> crossing;
   };
   struct Member {
     const Face *face;
@@ -163,6 +165,11 @@ class MPMHeatFaces : protected Pointers {
   bool weigh_by_surface(const Face &, Line &, const std::vector<double> &gradient,
                         const std::function<double(int64_t)> &conducting) const;
   void find_groups();
+  void find_crossing();
+  bool is_held(const Face &face) const
+  {
+    return conditions[face.face].kind == MPMHeatCondition::TEMPERATURE;
+  }
   void slow_down(Group &, double conduction) const;
   void set_up(Group &) const;
   bool is_limited(const Line &line) const { return line.rate > fastest; }

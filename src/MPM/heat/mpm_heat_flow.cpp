@@ -316,8 +316,25 @@ void MPMHeatFlow::project(int part, std::vector<double> &change)
 
 void MPMHeatFlow::each_term(int k, double dt, const Term &use)
 {
-  const auto &part = *parts[k];
-  part.each_term(use);
+  parts[k]->each_term(use);
+  each_surface_term(*parts[k], dt, use);
+}
+
+void MPMHeatFlow::add_diagonal(int k, double dt, std::vector<double> &diagonal)
+{
+  const Term add = [&](int n, const int64_t *nodes, int ngrad, const double *G, const double *K) {
+    add_diagonal_of(n, nodes, ngrad, G, K, diagonal);
+  };
+  if (const auto *matrix = parts[k]->kept_matrix())
+    for (std::size_t i = 0; i < diagonal.size(); i++) diagonal[i] += matrix->diagonal(i);
+  else
+    parts[k]->each_term(add);
+  each_surface_term(*parts[k], dt, add);
+}
+
+/** Visits the terms of faces, surfaces, and contacts of a part. */
+void MPMHeatFlow::each_surface_term(const MPMConduction &part, double dt, const Term &use) const
+{
   part.faces.each_term(std::max(part.bound_of_rates(), 1.0 / dt), use);
   for (const auto &body : bodies) {
     if (body->conduction != &part) continue;
@@ -335,6 +352,7 @@ void MPMHeatFlow::solve()
   double greatest = 0.0;
   for (auto &field : fields) {
     if (!field->conducts()) continue;
+    field->expect_rates(std::numeric_limits<int>::max());
     parts.push_back(field.get());
     solver->add(field->field, field->scalar);
     greatest = std::max(greatest, field->bound_of_rates());

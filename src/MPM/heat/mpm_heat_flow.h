@@ -184,6 +184,8 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   void find_changes() override;
   void project(int part, std::vector<double> &change) override;
   void each_term(int part, double dt, const Term &) override;
+  void add_diagonal(int part, double dt, std::vector<double> &diagonal) override;
+  void each_surface_term(const MPMConduction &, double dt, const Term &) const;
   void let_faster_points_go();
   void solve();
   bool jumps() const;

@@ -137,15 +137,15 @@ void FixMPMRelax::start_by_half()
 {
   for (auto *field : fields) {
     Grid &grid = field->grid;
-    double before, after, unused;
-    field->ledger.nodal_kinetic_energies(unused, before);
+    const double before = field->ledger.sums_over_nodes().energy;
     for (int64_t node = 0; node < grid.nnodes(); node++) {
       double *const record = grid.record(node);
       if (!(record[3] > 0.0)) continue;
       for (int d = 0; d < 3; d++) record[d] -= 0.5 * (record[d] - record[4 + d]);
     }
-    field->ledger.nodal_kinetic_energies(unused, after);
+    const double after = field->ledger.sums_over_nodes().energy;
     field->ledger.take(before - after);
+    field->ledger.count_at_points();
     taken[0] += before - after;
     taken[1] -= before - 2.0 * after;
   }
