@@ -151,7 +151,7 @@ void MPMLedger::account_for_forces(const NodeSums &sums)
   work_at_nodes = force->mvv2e * s.dt * s.force_scale * dot(acceleration, sums.momentum);
   internal += work_at_nodes + (spent() - spent_before) - (sums.energy - sums.old_energy);
   external += work_at_nodes;
-  if (work_at_nodes != 0.0) before_motion = sums_along_acceleration();
+  if (is_accelerated()) before_motion = sums_along_acceleration();
 }
 
 /** Work of forces counts on the way that points go, see work_on_points(). The nodes have got another
@@ -263,7 +263,7 @@ double MPMLedger::work_on_points() const
 {
   const double half = 0.5 * field.step_dt();
   if (common) {
-    if (work_at_nodes == 0.0) return 0.0;
+    if (!is_accelerated()) return 0.0;
     const PointSums now = sums_along_acceleration();
     return force->mvv2e * force->ftm2v *
         (now.place - before_motion.place - half * (now.velocity - before_motion.velocity));

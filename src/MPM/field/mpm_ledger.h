@@ -129,6 +129,10 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   /** What the accounts say that nodes have gained. */
   double spent() const { return external + boundary + contact + transfer - internal; }
   bool finds_common_acceleration(const NodeSums &);
+  bool is_accelerated() const
+  {
+    return acceleration[0] != 0.0 || acceleration[1] != 0.0 || acceleration[2] != 0.0;
+  }
   PointSums sums_along_acceleration() const;
   void account_for_forces(const NodeSums &);
   void account_at_points();
