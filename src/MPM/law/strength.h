@@ -241,6 +241,10 @@ namespace {
     static void update(const LawParameters &p, Batch &b, History history)
     {
       Flow flow(p, b);
+      update(flow, p, b, history);
+    }
+    static void update(Flow &flow, const LawParameters &p, Batch &b, History history)
+    {
       alignas(64) double trial[BATCH], stiff[BATCH], start[BATCH], yield[BATCH], D[BATCH];
       alignas(64) double most[BATCH];
 

@@ -170,15 +170,15 @@ namespace {
         tref(p.value[SCG_TREF]), temperature(MPM_NS::temperature(p, b))
     {
     }
-    /** Factor f. */
-    MPM_INLINE double factor(double pressure, double J, double T) const
+    /** Factor f. log_J: log(J). */
+    MPM_INLINE double factor(double pressure, double log_J, double T) const
     {
-      return max(1.0 + A * pressure * exp((1.0 / 3.0) * log(J)) - B * (T - tref), LEAST);
+      return max(1.0 + A * pressure * exp((1.0 / 3.0) * log_J) - B * (T - tref), LEAST);
     }
     /** Is the temperature T at or above the melting temperature? */
-    MPM_INLINE bool molten(double J, double T) const
+    MPM_INLINE bool molten(double J, double log_J, double T) const
     {
-      return T >= melt * exp(2.0 * a * (1.0 - J) + power * log(J));
+      return T >= melt * exp(2.0 * a * (1.0 - J) + power * log_J);
     }
     MPM_INLINE double T(int i) const { return temperature ? temperature[i] : tref; }
   };
@@ -198,10 +198,10 @@ namespace {
       const SteinbergState state(p, b);
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
-        const double T = state.T(i), J = b.Jold[i];
-        const double f = state.factor((-1.0 / 3.0) * trace(load_stress(b, i)), J, T);
+        const double T = state.T(i), J = b.Jold[i], log_J = log(J);
+        const double f = state.factor((-1.0 / 3.0) * trace(load_stress(b, i)), log_J, T);
         G[i] = G0 * f;
-        strong[i] = state.molten(J, T) ? 0.0 : f;
+        strong[i] = state.molten(J, log_J, T) ? 0.0 : f;
       }
     }
     MPM_INLINE double shear(int i) const { return G[i]; }
@@ -261,20 +261,16 @@ namespace {
 
     static void update(const LawParameters &p, Batch &b, History history)
     {
-      alignas(64) double before[BATCH], stiff[BATCH];
-      const SteinbergState state(p, b);
-      const double G0 = p.value[SCG_G0];
+      alignas(64) double before[BATCH];
+      SteinbergFlow flow(p, b);
       MPM_SIMD
-      for (int i = 0; i < b.n; i++) {
-        const Sym old = load_stress(b, i);
-        before[i] = b.Jold[i] * b.Jold[i] * norm2(deviator(old));
-        stiff[i] = G0 * state.factor((-1.0 / 3.0) * trace(old), b.Jold[i], state.T(i));
-      }
-      RadialReturn<SteinbergFlow>::update(p, b, history);
+      for (int i = 0; i < b.n; i++)
+        before[i] = b.Jold[i] * b.Jold[i] * norm2(deviator(load_stress(b, i)));
+      RadialReturn<SteinbergFlow>::update(flow, p, b, history);
       MPM_SIMD
       for (int i = 0; i < b.n; i++)
         history[1][i] +=
-            (b.J[i] * b.J[i] * norm2(load_stress(b, i)) - before[i]) / (4.0 * stiff[i]);
+            (b.J[i] * b.J[i] * norm2(load_stress(b, i)) - before[i]) / (4.0 * flow.G[i]);
     }
 
     static void modulus(const LawParameters &p, const Batch &b, History, double *k)
@@ -284,7 +280,7 @@ namespace {
       MPM_SIMD
       for (int i = 0; i < b.n; i++) {
         const Sym s = load_stress(b, i);
-        const double G = G0 * state.factor((-1.0 / 3.0) * trace(s), b.J[i], state.T(i));
+        const double G = G0 * state.factor((-1.0 / 3.0) * trace(s), log(b.J[i]), state.T(i));
         k[i] += (4.0 / 3.0) * G + b.J[i] * eigenvalue_bound(deviator(s));
       }
     }
