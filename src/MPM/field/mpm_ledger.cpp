@@ -65,6 +65,7 @@ void MPMLedger::account_for_nodes()
 {
   const NodeSums sums = sums_over_nodes();
   common = finds_common_acceleration(sums);
+  at_points = false;
   account_for_forces(sums);
   transfer += sums.old_energy - kinetic_points;
   kinetic_points = sums.energy;
@@ -78,8 +79,8 @@ bool MPMLedger::finds_common_acceleration(const NodeSums &sums)
   static constexpr bigint FIRST = 64, OFTEN = 32;    // of steps with a check
   static constexpr double ROUND_OFF = 1.0e-12;
   const bigint step = update->ntimestep;
-  if (step < FIRST || step % OFTEN == 0 || at_points || !field.time_limit->bound || !field.elements.empty() ||
-      !field.plan->added_stresses.empty())
+  if (step < FIRST || step % OFTEN == 0 || at_points || !field.time_limit->bound ||
+      !field.elements.empty() || !field.plan->added_stresses.empty())
     return false;
   // of the first point on a rank, and its negative; how much forces differ from it, and their size
   constexpr int N = 6;
@@ -98,7 +99,7 @@ bool MPMLedger::finds_common_acceleration(const NodeSums &sums)
     for (int i = run.first; i < run.last; i++) {
       const double *const f = r.f + 3 * (bigint) i, m = r.mass[i];
       mass += m;
-      differ += std::fabs(f[0] - m * a[0]) + std::fabs(f[1] - m * a[1]) + std::fabs(f[2] - m * a[2]);
+      for (int d = 0; d < 3; d++) differ += std::fabs(f[d] - m * a[d]);
     }
     sums_of_rank[0] += differ;
     sums_of_rank[1] += mass * (std::fabs(a[0]) + std::fabs(a[1]) + std::fabs(a[2]));
@@ -132,8 +133,7 @@ MPMLedger::PointSums MPMLedger::sums_along_acceleration() const
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++) {
       const double *const x = atom->x[i];
-      sums.place +=
-          m[i] * (a[0] * (x[0] - middle[0]) + a[1] * (x[1] - middle[1]) + a[2] * (x[2] - middle[2]));
+      for (int d = 0; d < 3; d++) sums.place += m[i] * a[d] * (x[d] - middle[d]);
       sums.velocity += m[i] * dot(a, atom->v[i]);
     }
   return sums;

@@ -58,11 +58,11 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   void nodes_solved()
   {
     impulses.clear();
-    at_points = false;
     spent_before = spent();
   }
-  /** Something has changed the velocities of nodes in this step that no account has. To be called on
-   *  all ranks. */
+  /** Something acts on the nodes in this step that has an account of its own outside of the time
+   *  from nodes_solved() to account_for_nodes(), or none: work is counted at points. To be called
+   *  in each such step, on all ranks. */
   void count_at_points() { at_points = true; }
   /** Accounts for the work of forces and kinetic energies, before points receive the changes at the
    *  nodes. */

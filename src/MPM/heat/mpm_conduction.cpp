@@ -765,8 +765,6 @@ double MPMConduction::nodes_to_points(const MPMRows &gradients)
 double MPMConduction::memory_usage() const
 {
   return faces.memory_usage() + scalar.memory_usage() + (layers ? layers->memory_usage() : 0.0) +
-      cuts.memory_usage() + matrix.memory_usage() + bytes_of(rate_by_sources) + idle.capacity() + ends.capacity() * sizeof(double) +
-      capacity_at_faces.capacity() * sizeof(double) +
-      (volumes.capacity() + seen.capacity() + shares.capacity() + given.capacity()) *
-      sizeof(double);
+      cuts.memory_usage() + matrix.memory_usage() +
+      bytes_of(rate_by_sources, idle, ends, capacity_at_faces, volumes, seen, shares, given);
 }

@@ -575,6 +575,8 @@ void MPMMixture::account_for_work()
   const double unit = water.field->step_dt() * force->mvv2e;
   if (soil.field->ledger.on) soil.field->ledger.internal -= on_soil * unit;
   if (water.field->ledger.on) water.field->ledger.internal -= on_water * unit;
+  soil.field->ledger.count_at_points();
+  water.field->ledger.count_at_points();
 }
 
 /** The water's volume changes by the flux of both; its points are strained with its own velocity

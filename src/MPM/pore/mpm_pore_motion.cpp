@@ -259,6 +259,7 @@ void MPMPoreMotion::move()
   }
   field.ledger.internal -= work * force->mvv2e;
   field.ledger.transfer -= kinetic * force->mvv2e;
+  field.ledger.count_at_points();
 
   to_points(change, nullptr);
   const auto &values = field.work.vectors;

@@ -21,8 +21,8 @@ namespace MPM_NS {
  *  images as transfers to nodes are.
  *
  *  Gradients of a constant are zero, and so is the sum of each row. A product is therefore made of
- *  differences, y_i = sum_j A_ij (x_j - x_i): round-off is that of what flows between nodes, and not
- *  of the values themselves.
+ *  differences, y_i = sum_j A_ij (x_j - x_i): round-off is that of what flows between nodes, and
+ *  not of the values themselves.
  *
  *  A row has the (2 reach + 1)^dim nodes around its node, whether or not they share points with it.
  *  There is no list of columns, and rows of a block are side by side, so that a product is a
@@ -33,7 +33,8 @@ class NodeMatrix {
    *  reach: the largest difference of the indices of two nodes of a point along an axis, 1 to 3. */
   void begin(const Grid &, int reach);
   /** Adds a point that reaches n nodes, numbers in the grid. gradient: G [n][ngrad], with the sum
-   *  zero over the nodes; stiffness: K [ngrad][ngrad], ngrad <= 3. Points with the same nodes are best added one after the other. */
+   *  zero over the nodes; stiffness: K [ngrad][ngrad], ngrad <= 3. Points with the same nodes are
+   *  best added one after the other. */
   void add_point(int n, const int64_t *nodes, int ngrad, const double *gradient,
                  const double *stiffness);
   /** To be called after the last point. */
