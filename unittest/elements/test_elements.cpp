@@ -460,27 +460,31 @@ TEST(Elements, HardeningIsRemembered)
 {
   const double G = 10.0, sy = 0.05, H = 3.0, g = 0.1;
   const double expected = (sy / sqrt(3.0) + H * g / 3.0) / (1.0 + H / (3.0 * G));
-  for (const auto &kind : kinds) {
-    SCOPED_TRACE(kind.name());
-    ScratchFile file("sheared.msh", block_mesh(kind), MPI_COMM_SELF);
-    if (nranks() > 1) GTEST_SKIP() << "on one rank only";
-    Scene run(replaced(
-        replaced(block(kind, file.name), "neohookean 30 0.3",
-                 strprintf("eos linear 30 strength j2 %g %g hardening linear %g thermal adiabatic "
-                           "1 300 0.9",
-                           G, sy, H)),
-        "density 2 ", "density 2e8 "));
-    run.commands("compute e all mpm/energy\nthermo_style custom step c_e[*]\n");
-    run.set_velocity([&](const double *x, double *v) {
-      v[0] = g * (x[1] - 3.5);
-    });
-    run.commands("timestep 0.01\nrun 100\n");
-    for (const auto &s : run.gather()) EXPECT_NEAR(s.stress[3], expected, 5e-4 * expected);
-    EXPECT_EQ(run.evaluate("c_e[4]"), 0.0);
-    EXPECT_NEAR(run.evaluate("c_e[5]"), 0.9 * run.evaluate("c_e[3]"),
-                1e-12 * run.evaluate("c_e[3]"));
-    EXPECT_GT(run.evaluate("c_e[3]"), 0.0);
-  }
+  for (const auto &kind : kinds)
+    for (const bool up : {false, true}) {    // along x with y, and along z with x
+      if (up && kind.dim == 2) continue;
+      SCOPED_TRACE(kind.name());
+      ScratchFile file("sheared.msh", block_mesh(kind), MPI_COMM_SELF);
+      if (nranks() > 1) GTEST_SKIP() << "on one rank only";
+      Scene run(replaced(
+          replaced(
+              block(kind, file.name), "neohookean 30 0.3",
+              strprintf("eos linear 30 strength j2 %g %g hardening linear %g thermal adiabatic "
+                        "1 300 0.9",
+                        G, sy, H)),
+          "density 2 ", "density 2e8 "));
+      run.commands("compute e all mpm/energy\nthermo_style custom step c_e[*]\n");
+      run.set_velocity([&](const double *x, double *v) {
+        v[up ? 2 : 0] = g * (up ? x[0] - 4.0 : x[1] - 3.5);
+      });
+      run.commands("timestep 0.01\nrun 100\n");
+      for (const auto &s : run.gather())
+        EXPECT_NEAR(s.stress[up ? 4 : 3], expected, 5e-4 * expected);
+      EXPECT_EQ(run.evaluate("c_e[4]"), 0.0);
+      EXPECT_NEAR(run.evaluate("c_e[5]"), 0.9 * run.evaluate("c_e[3]"),
+                  1e-12 * run.evaluate("c_e[3]"));
+      EXPECT_GT(run.evaluate("c_e[3]"), 0.0);
+    }
 }
 
 TEST(Elements, RanksAndRestart)

@@ -10,6 +10,8 @@
 
 #include "mpm_lammps.h"
 
+#include "group.h"
+
 #include <Eigen/Dense>
 
 #include <cstdlib>
@@ -303,6 +305,40 @@ TEST(MaterialFix, HistoryMovesWithThePoints)
   run.commands("group odd id 1:64:2\ndelete_atoms group odd compress no\nrun 0 post no\n");
   check();
   EXPECT_GT(before, 0);
+}
+
+// a point that turns inside out keeps its history, and those next to it have theirs as without it
+SERIAL_TEST(MaterialFix, HistoryNextToABadPoint)
+{
+  const auto hardened = [](const char *crushed, double v) {
+    const ScratchFile log("bad.log");
+    Scene run("log " + log.name + "\n" + plane("lj", "p f", "0 8 0 8", 1, 0.3) +
+              "fix grid all mpm 1.0 dtcheck no bad warn\nregion low block 1 2 1 2 INF INF\n"
+              "region high block 5 6 5 6 INF INF\ncreate_points 1 region low ppc 2\n"
+              "create_points 1 region high ppc 2\n"
+              "fix m all mpm/material density 2 eos linear 30 strength j2 10 0.05 hardening "
+              "linear 3\ngroup bad region " +
+              crushed +
+              "\ngroup good subtract all bad\nvariable v atom 0.4*(y-xcm(good,y))\n"
+              "velocity good set v_v 0 NULL\n" +
+              strprintf("variable w atom %g*(xcm(bad,x)-x)\nvelocity bad set v_w 0 NULL\n", v) +
+              "timestep 0.5\nrun 1\nlog none\n");
+    const auto *const m = run.material("m");
+    const int k = m->find_history("eplastic"), bad = run.lmp->group->find("bad");
+    std::map<tagint, double> found;
+    for (int i = 0; i < run.n(); i++) {
+      const bool is_bad = run.lmp->atom->mask[i] & run.lmp->group->bitmask[bad];
+      if (is_bad) EXPECT_EQ(m->history[i][k], 0.0);
+      if (!is_bad) found[run.lmp->atom->tag[i]] = m->history[i][k];
+    }
+    EXPECT_EQ(contains(file_text(log.name), "has a deformation gradient of determinant"), v > 0.0);
+    return found;
+  };
+  for (const char *crushed : {"low", "high"}) {
+    const auto with = hardened(crushed, 20.0), without = hardened(crushed, 0.0);
+    EXPECT_EQ(with, without);
+    for (const auto &point : without) EXPECT_GT(point.second, 0.01);
+  }
 }
 
 // as many history variables, but others

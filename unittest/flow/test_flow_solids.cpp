@@ -392,6 +392,26 @@ SERIAL_TEST(FlowSolids, Momentum)
 }
 
 // on four ranks, balanced; and the same to the last bit from a restart file
+// each point keeps the history of its law, here temperatures that nothing changes
+SERIAL_TEST(FlowSolids, KeepTheirHistory)
+{
+  Scene run(plane("lj", "p p", "0 1 0 1", 1, 0.1) +
+            "create_points 1 box spacing 0.125\nfix m all mpm/material density 1 neohookean 1 0.49 "
+            "thermal constant 300\nfix w all mpm/incompressible 0.25 1 solid all\n"
+            "variable v atom 0.1*sin(2*PI*x)\nvelocity all set NULL v_v NULL\ntimestep 0.02\n"
+            "run 0\n");
+  auto *const material = run.material("m");
+  const int T = material->find_history("temperature");
+  for (int i = 0; i < run.n(); i++) material->history[i][T] = 300.0 + run.lmp->atom->tag[i];
+  run.commands("run 3\n");
+  double sheared = 0.0;
+  for (int i = 0; i < run.n(); i++) {
+    EXPECT_EQ(material->history[i][T], 300.0 + run.lmp->atom->tag[i]);
+    grow(sheared, run.points().F[i][3]);
+  }
+  EXPECT_GT(sheared, 0.01);
+}
+
 TEST(FlowSolids, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {

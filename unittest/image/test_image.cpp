@@ -221,6 +221,10 @@ TEST(Reader, NumberedFiles)
   }
   const File other("0011.pgm", pgm(picture));
   expect_values(read_image("test_image.%04d.pgm", {}, {8, 10}), stack, "stack");
+  const Pixels second(5, 4, 1, [](int i, int j, int) {
+    return odd(i, j, 1);
+  });
+  expect_values(read_image("test_image.%04d.pgm", {}, {9, 9}), second, "a stack of one slice");
   const auto failure_of_slices = [](const std::string &name, int first, int last) {
     return failure_of(name, RawLayout(), SliceRange{first, last});
   };

@@ -179,14 +179,20 @@ SERIAL_TEST(Blocks, Part)
   EXPECT_NEAR(run.fix("floor")->compute_vector(1), 0.0, 1e-6);
 }
 
+/** Blocks that are this many node spacings apart, of which a load pushes the upper one down. */
+static std::string blocks_apart(double gap)
+{
+  return blocks("", 0.5, 0.0, 1e6, 0.0, "0 0.8 0 1.2", "static") +
+      strprintf("displace_atoms up move 0 %.17g 0\n", gap * 0.1) +
+      "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
+      "fix load up addforce 0 -200 0\n";
+}
+
 // a block above the other one by parts of a node spacing comes to it in the step, and not nearer
 SERIAL_TEST(Blocks, ComeTogether)
 {
   for (const double gap : {0.1, 0.35}) {
-    Scene run(blocks("", 0.5, 0.0, 1e6, 0.0, "0 0.8 0 1.2", "static") +
-              strprintf("displace_atoms up move 0 %.17g 0\n", gap * 0.1) +
-              "fix sides all mpm/boundary xlo xhi slip\nfix floor all mpm/boundary ylo stick\n"
-              "fix load up addforce 0 -200 0\nrun 1\n");
+    Scene run(blocks_apart(gap) + "run 1\n");
     const double force = -200.0 * run.evaluate("count(up)");
     EXPECT_NEAR(touch(run, 1) / force, 1.0, 1e-6);
     EXPECT_NEAR(run.fix("floor")->compute_vector(1) / force, 1.0, 1e-6);
@@ -198,6 +204,12 @@ SERIAL_TEST(Blocks, ComeTogether)
         0.0, 0.02);
     EXPECT_NEAR(measured("upper block", (mean(run, run.x(), 2, 1) - exact_up) / 0.1), 0.0, 0.03);
   }
+}
+
+// from 0.4 node spacings on nothing tells where it would come to rest
+SERIAL_TEST(Blocks, AreTooFarApart)
+{
+  expect_error(blocks_apart(0.6) + "run 1\n", "no equilibrium");
 }
 
 // sides along a line of nodes through the interface, whose slope is round-off, are not part of it:

@@ -808,6 +808,7 @@ SERIAL_TEST(Traction, BadInput)
        {fix + "region end moment 1 2", "missing argument"},
        {fix + "region end moment 1 2 nan", "nan"},
        {fix + "free moment 1 2 3", "must not be on all of the free surface"},
+       {"variable s atom x\n" + fix + "region end moment v_s 0 0", "moment is not equal-style"},
        {"variable s atom x\n" + fix + "region end moment 0 0 v_s", "moment is not equal-style"},
        {fix + "region nowhere pressure 1",
         "Region nowhere for fix mpm/traction load does not exist"},

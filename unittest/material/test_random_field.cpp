@@ -354,6 +354,25 @@ TEST_F(Random, InitialStateOfALaw)
   }
 }
 
+// as well behind other laws: what starts above its melting temperature is molten
+TEST_F(Random, InitialStateBehindOtherLaws)
+{
+  const auto material =
+      make(STEEL + "thermal adiabatic 460 300 0.9 melt 300 1e4 random T0 normal 0.1 0.1 3");
+  const int T = row(*material, "temperature"), molten = row(*material, "molten");
+  ASSERT_GT(T, 0);
+  int n = 0, above = 0;
+  std::vector<double> history(material->history().size());
+  at_places(0.21, [&](const double *x) {
+    material->initialize(x, history.data());
+    n++;
+    above += history[T] > 300.0;
+    EXPECT_EQ(history[molten], history[T] > 300.0 ? 1.0 : 0.0);
+  });
+  EXPECT_GT(above, n / 4);
+  EXPECT_LT(above, 3 * n / 4);
+}
+
 // a range of the density looks at that of the point, and so does whoever asks for it
 TEST_F(Random, DensityOfAPoint)
 {

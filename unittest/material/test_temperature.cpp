@@ -368,6 +368,8 @@ TEST(Conducted, HeatRaisesThePressure)
                     1e-11);
         EXPECT_NEAR(p.stored_energy(), stored, 1e-9 * w.density * 900 * 300);
         EXPECT_EQ(value(p, "temperature"), T);
+        EXPECT_EQ(value(p, "energy_temperature"), T);
+        if (melts) EXPECT_EQ(value(p, "energy_molten"), molten);
       }
       EXPECT_EQ(p.work[VISCOUS], 0.0);
       EXPECT_EQ(p.work[PLASTIC], 0.0);

@@ -181,6 +181,10 @@ fix fine upper mpm 0.05 origin 0.025 0.025
     expect_error(replaced(plain, what, with) + "mpm_geostatic grid 0.5\n", why);
   };
   refused("linear 1e7", "hencky 1e7", "does not keep the stress");
+  refused("fix m all",
+          "group one id 1\ngroup rest subtract all one\n"
+          "fix rock one mpm/material density 1800 hencky 1e7 0.3\nfix m rest",
+          "law of fix mpm/material rock does not keep the stress");
   refused("linear 1e7 0.3", "mohr/coulomb 1e7 0.3 15 0", "K0 within its yield surface");
   refused("origin 0 0", "shape linear origin 0 0", "use shape quadratic or cubic");
   refused("origin 0 0", "shape cubic origin 0 0.04", "in a plane of nodes");

@@ -239,6 +239,24 @@ SERIAL_TEST(ThinRegions, ToolsThatPushAreReported)
   }
 }
 
+// the same along x
+SERIAL_TEST(ThinRegions, ToolsThatPushAsideAreReported)
+{
+  const auto is_told = [](const std::string &tool) {
+    return times_said(
+        plane("si", "f f", "0 1.5 0 2", 1, 0.03) +
+            "fix grid all mpm 0.1\nregion soil block INF 1 INF INF INF INF\n"
+            "create_points 1 region soil ppc 2\nfix m all mpm/material density 1000 linear 1e5 "
+            "0.3\nfix sides all mpm/boundary xlo ylo yhi slip\nvariable left equal -2*time\n"
+            "region tool block 1 3 " +
+            tool + " INF INF move v_left NULL NULL\nfix w all mpm/boundary region tool slip\n" +
+            run_until(0.08),
+        "moves into material and is so narrow");
+  };
+  EXPECT_EQ(is_told("-1 0.4"), 1);
+  EXPECT_EQ(is_told("-1 0.6"), 0);
+}
+
 const std::string THINNER = "Fix mpm/boundary w: its region tool is thinner than 1.5 node spacings";
 
 SERIAL_TEST(ThinRegions, AreReported)
