@@ -255,3 +255,19 @@ SERIAL_TEST(BadInput, IsRefused)
                   {"fix heat all mpm/heat time euler tolerance 2", "tolerance"},
                   {"fix heat all mpm/heat time", "time"}});
 }
+
+// sources in points are known before the step, and come with the rates of each stage
+SERIAL_TEST(Source, GivesItsIntegral)
+{
+  for (const char *time : {"time euler", "time sdirk2"}) {
+    Scene run(bar(20, std::string("source v_q ") + time, 0.25, "dtcheck no") +
+              "variable q atom 1.0+x\n");
+    Warm warm(run);
+    const double before = warm.heat();
+    run.commands("timestep 0.5\nrun 4\n");
+    double whole = 0.0;
+    for (int i = 0; i < run.n(); i++) whole += run.mass()[i] * (1.0 + run.x()[i][0]) * 2.0;
+    EXPECT_NEAR(measured("came over whole", heat_in(run) / whole), 1.0, 1e-12) << time;
+    EXPECT_NEAR(measured("got over whole", (warm.heat() - before) / whole), 1.0, 1e-12) << time;
+  }
+}
