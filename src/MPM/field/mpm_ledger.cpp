@@ -80,7 +80,8 @@ bool MPMLedger::finds_common_acceleration(const NodeSums &sums)
   static constexpr double ROUND_OFF = 1.0e-12;
   const bigint step = update->ntimestep;
   if (step < FIRST || step % OFTEN == 0 || at_points || !field.time_limit->bound ||
-      !field.elements.empty() || !field.plan->added_stresses.empty())
+      !field.elements.empty() || !field.stretching.empty() ||
+      !field.plan->added_stresses.empty())
     return false;
   // of the first point on a rank, and its negative; how much forces differ from it, and their size
   constexpr int N = 6;
