@@ -80,8 +80,7 @@ bool MPMLedger::finds_common_acceleration(const NodeSums &sums)
   static constexpr double ROUND_OFF = 1.0e-12;
   const bigint step = update->ntimestep;
   if (step < FIRST || step % OFTEN == 0 || at_points || !field.time_limit->bound ||
-      !field.elements.empty() || !field.stretching.empty() ||
-      !field.plan->added_stresses.empty())
+      !field.elements.empty() || !field.stretching.empty() || !field.plan->added_stresses.empty())
     return false;
   // of the first point on a rank, and its negative; how much forces differ from it, and their size
   constexpr int N = 6;
@@ -111,8 +110,8 @@ bool MPMLedger::finds_common_acceleration(const NodeSums &sums)
   double most = 0.0;
   for (double g : greatest) most = std::max(most, std::fabs(g));
   // with other physics, nodes can have other masses than those of the points
-  bool same = total[0] <= ROUND_OFF * total[1] &&
-      std::fabs(total[2] - total[3]) <= ROUND_OFF * total[2];
+  bool same =
+      total[0] <= ROUND_OFF * total[1] && std::fabs(total[2] - total[3]) <= ROUND_OFF * total[2];
   for (int d = 0; d < 3; d++) {
     same = same && greatest[d] + greatest[3 + d] <= ROUND_OFF * most;
     acceleration[d] = 0.5 * (greatest[d] - greatest[3 + d]);

@@ -520,8 +520,7 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
       nodes.clear();
       gradients.clear();
       stencil.visit(block, i, [&](const MPMStencil::Node &node) {
-        const std::size_t k =
-            std::find(nodes.begin(), nodes.end(), node.number) - nodes.begin();
+        const std::size_t k = std::find(nodes.begin(), nodes.end(), node.number) - nodes.begin();
         if (k == nodes.size()) {
           nodes.push_back(node.number);
           gradients.resize(gradients.size() + dim, 0.0);

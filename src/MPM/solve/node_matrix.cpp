@@ -105,7 +105,10 @@ template <int DIM, int REACH> void NodeMatrix::multiply_blocks(const double *x, 
     double *const out = y + slot * NODES_PER_BLOCK;
     std::fill_n(out, NODES_PER_BLOCK, 0.0);
     const char *is_used = used.data() + slot * NLINE;
-    if (std::none_of(is_used, is_used + NLINE, [](char is) { return is; })) continue;
+    if (std::none_of(is_used, is_used + NLINE, [](char is) {
+          return is;
+        }))
+      continue;
     const int *const neighbors = grid->blocks[slot].slot;
     for (int k = 0; k < NTILE; k++) {
       const int from = neighbors[sources[k].neighbor];
@@ -119,8 +122,8 @@ template <int DIM, int REACH> void NodeMatrix::multiply_blocks(const double *x, 
           entry += width * SIDE;
           continue;
         }
-        const double *const own = tile +
-            ((DIM == 3 ? plane + REACH : 0) * ACROSS + line + REACH) * ACROSS + REACH;
+        const double *const own =
+            tile + ((DIM == 3 ? plane + REACH : 0) * ACROSS + line + REACH) * ACROSS + REACH;
         for (int a = 0; a < LAYERS; a++)
           for (int b = 0; b < ROW; b++) {
             const double *at = tile + ((plane + a) * ACROSS + line + b) * ACROSS;

@@ -64,7 +64,7 @@ class NodeMatrix {
   std::size_t place(int64_t node, int entry) const
   {
     const int side = grid->side;
-    return ((std::size_t) (node / side) * width + entry) * side + node % side;
+    return ((std::size_t)(node / side) * width + entry) * side + node % side;
   }
   void flush();
   template <int DIM, int REACH> void multiply_blocks(const double *x, double *y) const;
