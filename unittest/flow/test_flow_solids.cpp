@@ -391,7 +391,6 @@ SERIAL_TEST(FlowSolids, Momentum)
   }
 }
 
-// on four ranks, balanced; and the same to the last bit from a restart file
 // each point keeps the history of its law, here temperatures that nothing changes
 SERIAL_TEST(FlowSolids, KeepTheirHistory)
 {
@@ -412,6 +411,7 @@ SERIAL_TEST(FlowSolids, KeepTheirHistory)
   EXPECT_GT(sheared, 0.01);
 }
 
+// on four ranks, balanced; and the same to the last bit from a restart file
 TEST(FlowSolids, RanksAndRestart)
 {
   for (const int dim : {2, 3}) {

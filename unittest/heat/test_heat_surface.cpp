@@ -664,10 +664,10 @@ TEST(SurfaceInNodes, IsTheSameOnALatticeMovedByRoundOff)
               "fix m all mpm/material density 2 linear 5e4 0.3 thermal conducting 1 300 1\n"
               "fix heat all mpm/heat surface flux 100 every 1\ntimestep 1e-3\n"
               "compute T all mpm/atom temperature\nrun 20\n");
-    std::vector<double> T(run.n());
-    for (int i = 0; i < run.n(); i++)
-      T[run.lmp->atom->tag[i] - 1] = run.per_atom("T")->vector_atom[i];
-    return T;
+    std::vector<double> T(run.lmp->atom->natoms, 0.0);
+    const double *const mine = run.per_atom("T")->vector_atom;
+    for (int i = 0; i < run.n(); i++) T[run.lmp->atom->tag[i] - 1] = mine[i];
+    return over_ranks(T);
   };
   for (const double spacing : {1.0, 0.5, 1.0 / 3.0})
     for (const double origin : {3e-15, -3e-15}) {

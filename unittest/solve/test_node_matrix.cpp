@@ -54,20 +54,19 @@ TEST_P(NodeMatrixOf, MultipliesAsTheSumOverPoints)
     std::fill(expected.begin(), expected.end(), 0.0);
     std::fill(diagonal.begin(), diagonal.end(), 0.0);
     matrix.begin(grid, reach);
-    for (int point = 0; point < 300; point++) {
-      // first nodes such that all of a point's nodes are in active blocks
-      std::uniform_int_distribution<int> along_x(-grid.side, grid.side - 1 - reach),
-          along_y(0, 2 * grid.side - 1 - reach), along_z(-grid.side, grid.side - 1 - reach);
-      const int first[3] = {std::min(along_x(random), -1 - reach), along_y(random),
-                            dim == 3 ? std::min(along_z(random), 0) : 0};
+    for (int point = 0; point < 1000; point++) {
+      std::uniform_int_distribution<int> any(-grid.side, 2 * grid.side - 1);
+      const int first[3] = {any(random), any(random), dim == 3 ? any(random) : 0};
       std::vector<int64_t> nodes;
+      bool all = true;    // are the blocks of all of its nodes there?
       for (int i = 0; i <= reach; i++)
         for (int j = 0; j <= reach; j++)
           for (int k = 0; k <= (dim == 3 ? reach : 0); k++) {
             const int index[3] = {first[0] + i, first[1] + j, first[2] + k};
-            const int64_t node = grid.locate(index);
-            if (node >= 0) nodes.push_back(node);
+            nodes.push_back(grid.locate(index));
+            all = all && nodes.back() >= 0;
           }
+      if (!all) continue;
       const int n = (int) nodes.size(), npoint = 1 + point % 3;    // some with the same nodes
       for (int p = 0; p < npoint; p++) {
         auto G = numbers((std::size_t) n * dim);

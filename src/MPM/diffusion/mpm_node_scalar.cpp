@@ -207,7 +207,8 @@ double MPMNodeScalar::greatest_row()
     // points on a side of a cell give the node in its middle a gradient, but no capacity at all
     if (rate[k] > 0.0)
       rate[k] = capacity[k] > 0.0 ? rate[k] / capacity[k] : std::numeric_limits<double>::max();
-    most = std::max(most, rate[k]);
+    // images have a part of the sums only, which depends on the ranks
+    if (field.grid.owns(k)) most = std::max(most, rate[k]);
   }
   return most;
 }

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -79,6 +80,39 @@ class MPMStencil {
       MPM_NS::Gimp::weights(t - MPM_NS::Gimp::shift - first[d], size, w[d]);
       MPM_NS::Gimp::gradients(t - MPM_NS::Gimp::shift - first[d], size, dw[d]);
     }
+  }
+
+  /** Finds the nodes of point i without a domain, which is in the given block, and the gradients of
+   *  their functions, [n][dim] [1/distance]. The lists may be empty or those of another point, whose
+   *  numbers stay if they are the same. */
+  void find_gradients(const MPM_NS::Grid::Block &block, int i, std::vector<int64_t> &nodes,
+                      std::vector<double> &gradients) const
+  {
+    const int dim = field.lattice.dim;
+    const double per_spacing = 1.0 / field.lattice.h;
+    int first[3], n[3];
+    double w[3][4], dw[3][4];
+    along_axes(i, field.frame->places()[i], first, n, w, dw);
+    const std::size_t count = (std::size_t) n[0] * n[1] * n[2];
+    const bool same = nodes.size() == count && nodes[0] == field.grid.locate_near(block, first);
+    nodes.resize(count);
+    gradients.resize(dim * count);
+    int64_t *number = nodes.data();
+    double *at = gradients.data();
+    for (int i0 = 0; i0 < n[0]; i0++)
+      for (int i1 = 0; i1 < n[1]; i1++) {
+        const double across = per_spacing * w[0][i0] * w[1][i1],
+                     along_0 = per_spacing * dw[0][i0] * w[1][i1],
+                     along_1 = per_spacing * w[0][i0] * dw[1][i1];
+        for (int i2 = 0; i2 < n[2]; i2++, at += dim, number++) {
+          at[0] = along_0 * w[2][i2];
+          at[1] = along_1 * w[2][i2];
+          if (dim == 3) at[2] = across * dw[2][i2];
+          if (same) continue;
+          const int index[3] = {first[0] + i0, first[1] + i1, first[2] + i2};
+          *number = field.grid.locate_near(block, index);
+        }
+      }
   }
 
   /** Calls f(Node) for all nodes of point i, which is in the given block. */

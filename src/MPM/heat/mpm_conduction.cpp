@@ -510,8 +510,6 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
       for (int e = 0; e < dim; e++) stiffness[dim * d + e] = times * k[d][e];
     use((int) nodes.size(), nodes.data(), dim, gradients.data(), stiffness);
   };
-  const double per_spacing = 1.0 / field.lattice.h;
-  int last[3] = {}, last_slot = -1;
   each_point(field, [&](const auto &run, int i) {
     const Thermal *const t = thermal(run.material);
     if (!t || (cuts.any() && cuts.is_cut[i])) return;
@@ -528,29 +526,7 @@ void MPMConduction::each_term(const MPMDiffusion::Term &use) const
         for (int d = 0; d < dim; d++) gradients[dim * k + d] += node.gradient[d];
       });
     } else {
-      int first[3], n[3], k[3];
-      double w[3][4], dw[3][4];
-      stencil.along_axes(i, field.frame->places()[i], first, n, w, dw);
-      const bool same = run.slot == last_slot && std::equal(first, first + 3, last);
-      last_slot = run.slot;
-      std::copy_n(first, 3, last);
-      if (!same) nodes.clear();
-      gradients.resize((std::size_t) dim * n[0] * n[1] * n[2]);
-      double *at = gradients.data();
-      for (k[0] = 0; k[0] < n[0]; k[0]++)
-        for (k[1] = 0; k[1] < n[1]; k[1]++) {
-          const double w01 = per_spacing * w[0][k[0]] * w[1][k[1]],
-                       along_0 = per_spacing * dw[0][k[0]] * w[1][k[1]],
-                       along_1 = per_spacing * w[0][k[0]] * dw[1][k[1]];
-          for (k[2] = 0; k[2] < n[2]; k[2]++, at += dim) {
-            at[0] = along_0 * w[2][k[2]];
-            at[1] = along_1 * w[2][k[2]];
-            if (dim == 3) at[2] = w01 * dw[2][k[2]];
-            if (same) continue;
-            const int index[3] = {first[0] + k[0], first[1] + k[1], first[2] + k[2]};
-            nodes.push_back(field.grid.locate_near(block, index));
-          }
-        }
+      stencil.find_gradients(block, i, nodes, gradients);
     }
     give(*t, i, 1.0, AS_SHARES);
   });
@@ -572,44 +548,38 @@ void MPMConduction::expect_rates(int number)
   wanted = number > few && !field.domains && !scalar.is_level;
 }
 
-/** Conductivities and places of points do not change in a step. */
-void MPMConduction::make_matrix()
+/** Conductivities, places, and sources of points do not change in a step. Collective. */
+void MPMConduction::make_matrix(const double *source)
 {
   matrix.begin(field.grid, stencil_order(field.options.shape));
   each_term([this](int n, const int64_t *nodes, int ngrad, const double *G, const double *K) {
     matrix.add_point(n, nodes, ngrad, G, K);
   });
   matrix.finish();
-  rate_by_sources.clear();
   made = true;
-}
-
-void MPMConduction::add_sources(const double *source, Heats &power)
-{
-  if (rate_by_sources.empty()) {
-    power_of_sources = 0.0;
-    scalar.add_up(
-        [&](const MPMPointMap::Run &, int first, int n, double *of_points) {
-          double sum = 0.0;
-          for (int p = 0; p < n; p++) sum += of_points[p] = volumes[first + p] * source[first + p];
-          power_of_sources += sum;
-        },
-        rate_by_sources);
-    scalar.divide(rate_by_sources);
-  }
-  for (std::size_t k = 0; k < rate.size(); k++) rate[k] += rate_by_sources[k];
-  power[SOURCES] += power_of_sources;
+  power_of_sources = 0.0;
+  if (!source) return;
+  scalar.add_up(
+      [&](const MPMPointMap::Run &, int first, int n, double *of_points) {
+        double sum = 0.0;
+        for (int p = 0; p < n; p++) sum += of_points[p] = volumes[first + p] * source[first + p];
+        power_of_sources += sum;
+      },
+      rate_by_sources);
+  scalar.divide(rate_by_sources);
 }
 
 void MPMConduction::find_rates(const double *source, Heats &power)
 {
   if (wanted && at_start != TO_BE_SEEN) {
-    if (!made) make_matrix();
+    if (!made) make_matrix(source);
     field.nodes.complete(temperature.data(), 1, 1);
     matrix.multiply(temperature.data(), rate.data());
     for (double &r : rate) r = -r;
     scalar.sum_rates();
-    if (source) add_sources(source, power);
+    if (!source) return;
+    for (std::size_t k = 0; k < rate.size(); k++) rate[k] += rate_by_sources[k];
+    power[SOURCES] += power_of_sources;
     return;
   }
   const auto see = [&](int first, int n, const MPMNodeScalar::Rows q) {

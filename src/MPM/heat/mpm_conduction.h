@@ -93,8 +93,8 @@ class MPMConduction : protected Pointers {
    *  capacity get no heat through surfaces, without their contribution to it. */
   double rate_at_edges() const { return has_idle() ? std::min(conducted, usual_rate) : conducted; }
   /** Rates of the temperatures of the nodes, or of small changes of these, by conduction and
-   *  sources. source: [n] power per volume, or null. Adds the power of sources to power. To be
-   *  followed by add_given(). */
+   *  sources. source: [n] power per volume, or null; the first call in a step is for temperatures.
+   *  Adds the power of sources to power. To be followed by add_given(). */
   void find_rates(const double *source, Heats &power);
   /** How often find_rates() will be called in this step. If it is often, rates come from the matrix
    *  of conduction, except with domains and on several lattices. */
@@ -266,8 +266,7 @@ class MPMConduction : protected Pointers {
   const MPM_NS::Conduction &conduction_of(const Thermal &, int i, MPM_NS::Conduction &buffer) const;
   void find_ranges();
   void tensor(const Thermal &, int i, double k[3][3]) const;
-  void make_matrix();
-  void add_sources(const double *source, Heats &power);
+  void make_matrix(const double *source);
   bool is_plain() const;
   double conducting_volume(int i, Left left) const
   {

@@ -11,6 +11,7 @@
 #include "solve/bytes_of.h"
 
 #include <algorithm>
+#include <type_traits>
 
 using namespace MPM_NS;
 
