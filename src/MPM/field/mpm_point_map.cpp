@@ -326,7 +326,7 @@ void MPMPointMap::sort()
   for (const auto &entry : index_of_block) rank[entry.second] = nblocks++;
   for (auto &k : key)
     if (k >= 0) k = rank[k / keys_per_block] * keys_per_block + k % keys_per_block;
-  put_in_order(lmp, key, nblocks * keys_per_block);
+  put_in_order(lmp, order_by_keys(lmp, key, nblocks * keys_per_block));
 
   sorted_disorder = -1;    // to be counted with the next topology
   extra_disorder = 0;
@@ -335,10 +335,9 @@ void MPMPointMap::sort()
   sort_time += platform::walltime() - start;
 }
 
-void LAMMPS_NS::put_in_order(LAMMPS *lmp, std::vector<int> &key, int nkeys)
+std::vector<int> LAMMPS_NS::order_by_keys(LAMMPS *lmp, std::vector<int> &key, int nkeys)
 {
-  Atom *const atom = lmp->atom;
-  Comm *const comm = lmp->comm;
+  const Atom *const atom = lmp->atom;
   const int nlocal = atom->nlocal;
   const int firstbit = atom->firstgroupname ? lmp->group->bitmask[atom->firstgroup] : 0;
   const int others = firstbit ? nkeys + 1 : 0;
@@ -350,20 +349,28 @@ void LAMMPS_NS::put_in_order(LAMMPS *lmp, std::vector<int> &key, int nkeys)
     start_of_key[key[i] + 1]++;
   }
   for (int k = 0; k < all_keys; k++) start_of_key[k + 1] += start_of_key[k];
-  std::vector<int> permute(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
-  for (int i = 0; i < nlocal; i++) permute[next[key[i]]++] = i;
+  std::vector<int> order(nlocal), next(start_of_key.begin(), start_of_key.end() - 1);
+  for (int i = 0; i < nlocal; i++) order[next[key[i]]++] = i;
   const tagint *tag = atom->tag;
   for (int k = 0; k < all_keys - 1; k++)    // of the last key, and of nkeys, are no points
     if (k != nkeys && start_of_key[k + 1] - start_of_key[k] > 1)
-      std::sort(permute.begin() + start_of_key[k], permute.begin() + start_of_key[k + 1],
+      std::sort(order.begin() + start_of_key[k], order.begin() + start_of_key[k + 1],
                 [tag](int i, int j) {
                   return tag[i] < tag[j];
                 });
+  return order;
+}
+
+void LAMMPS_NS::put_in_order(LAMMPS *lmp, const std::vector<int> &order)
+{
+  Atom *const atom = lmp->atom;
+  Comm *const comm = lmp->comm;
+  const int nlocal = atom->nlocal;
 
   // ghosts refer to the old order, and the first of them is in the free place that is used below:
   // the map must forget them before
   const bool mapped = atom->map_style != Atom::MAP_NONE;
-  const bool moves = !std::is_sorted(permute.begin(), permute.end());
+  const bool moves = !std::is_sorted(order.begin(), order.end());
   bigint renew = atom->nghost + (moves && mapped), renew_all;
   MPI_Allreduce(&renew, &renew_all, 1, MPI_LMP_BIGINT, MPI_SUM, lmp->world);
   if (renew_all) {
@@ -374,18 +381,18 @@ void LAMMPS_NS::put_in_order(LAMMPS *lmp, std::vector<int> &key, int nkeys)
 
   // move the atoms, cycle by cycle, through the free place at the end
   if (nlocal == atom->nmax) atom->avec->grow(0);
-  std::vector<int> &current = key;
+  std::vector<int> current(nlocal);
   for (int i = 0; i < nlocal; i++) current[i] = i;
   for (int i = 0; i < nlocal; i++) {
-    if (current[i] == permute[i]) continue;
+    if (current[i] == order[i]) continue;
     atom->avec->copy(i, nlocal, 0);
     int empty = i;
-    while (permute[empty] != i) {
-      atom->avec->copy(permute[empty], empty, 0);
-      empty = current[empty] = permute[empty];
+    while (order[empty] != i) {
+      atom->avec->copy(order[empty], empty, 0);
+      empty = current[empty] = order[empty];
     }
     atom->avec->copy(nlocal, empty, 0);
-    current[empty] = permute[empty];
+    current[empty] = order[empty];
   }
 
   if (renew_all) comm->borders();

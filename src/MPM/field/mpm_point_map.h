@@ -87,13 +87,15 @@ class MPMPointMap : protected Pointers {
       0;    // excess of disorder over sorted_disorder, summed over the steps since the last sort
 };
 
-/** Moves the atoms of this rank into the order of their keys; atoms with equal keys are sorted by
- *  tag. Collective.
+/** Indices of the atoms of this rank in the order of their keys; atoms with equal keys are sorted by
+ *  tag.
  *
- *  key: [nlocal] from 0 to nkeys - 1. Atoms with a negative key come last, in their previous order.
+ *  key: [nlocal] from 0 to nkeys - 1. Atoms with a negative key come last, in their present order.
  *  If LAMMPS wants the atoms of a group to be first (atom_modify first), they stay first and are
  *  sorted in the same way among themselves. The vector is overwritten. */
-void put_in_order(LAMMPS *, std::vector<int> &key, int nkeys);
+std::vector<int> order_by_keys(LAMMPS *, std::vector<int> &key, int nkeys);
+/** Moves the data of the atoms of this rank: atom i is order[i] of before. Collective. */
+void put_in_order(LAMMPS *, const std::vector<int> &order);
 
 }    // namespace LAMMPS_NS
 #endif

@@ -94,12 +94,13 @@ void FixMPMIncompressible::setup_pre_neighbor()
   refuse_other_integrators(lmp, *this);
   flow->checks.check_others(*this);
   flow->checks.check_time_step();
-  pre_neighbor();
+  flow->parts.cells.sort(true);
+  travel = 0.0;
 }
 
 /* ----------------------------------------------------------------------
-   Called after exchange and borders. The order of points must not depend on an earlier order, so
-   that a run that continues from a restart file sums in the same order.
+   Called after exchange and borders. The order in which points are summed must not depend on an
+   earlier order, so that a run that continues from a restart file sums in the same one.
 ------------------------------------------------------------------------- */
 
 void FixMPMIncompressible::pre_neighbor()

@@ -19,11 +19,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double FARTHEST = 4.0e6;    // largest index that a block can have, see MPMField
+// data is moved for the sake of the cache only: each move costs a third of a step
+static constexpr int SORTS_PER_MOVE = 20;
 
 MPMFlowLattice::MPMFlowLattice(LAMMPS *lmp, const MPM_NS::Lattice &of, int groupbit) :
     Pointers(lmp), grid(of), lattice(grid.lattice), groupbit(groupbit), halo(lmp)
@@ -83,7 +86,7 @@ std::array<int, 3> MPMFlowLattice::block_of(const int base[3]) const
 
 /* ---------------------------------------------------------------------- */
 
-void MPMFlowLattice::sort()
+void MPMFlowLattice::sort(bool move)
 {
   std::map<std::array<int, 3>, int> blocks;    // ordered
   std::vector<int> key(atom->nlocal, -1);
@@ -108,7 +111,17 @@ void MPMFlowLattice::sort()
   for (const auto &block : blocks) rank[block.second] = n++;
   for (auto &k : key)
     if (k >= 0) k = rank[k / NODES_PER_BLOCK] * NODES_PER_BLOCK + k % NODES_PER_BLOCK;
-  put_in_order(lmp, key, n * NODES_PER_BLOCK);
+  points = order_by_keys(lmp, key, n * NODES_PER_BLOCK);
+  if (move || ++sorts == SORTS_PER_MOVE) {
+    sorts = 0;
+    put_in_order(lmp, points);
+    std::iota(points.begin(), points.end(), 0);
+  }
+  points.erase(std::remove_if(points.begin(), points.end(),
+                              [this](int i) {
+                                return !is_point(i);
+                              }),
+               points.end());
   valid = false;
 }
 
@@ -124,18 +137,17 @@ void MPMFlowLattice::find_cells()
   runs.clear();
   ranges.clear();
   std::array<int, 3> last = {INT_MAX, INT_MAX, INT_MAX};
-  for (int i = 0; i < atom->nlocal; i++) {
-    if (!is_point(i)) continue;
+  for (int k = 0; k < (int) points.size(); k++) {
     int base[3];
-    base_of(atom->x[i], base);
+    base_of(atom->x[points[k]], base);
     const auto b = block_of(base);
-    if (b == last && runs.back().last == i) {
+    if (b == last) {
       runs.back().last++;
     } else {
       const int slot = grid.activate(b.data());
       if (slot == (int) ranges.size())
         ranges.push_back({{base[0], base[1], base[2]}, {base[0], base[1], base[2]}});
-      runs.push_back({i, i + 1, slot});
+      runs.push_back({k, k + 1, slot});
       last = b;
     }
     Range &r = ranges[runs.back().slot];
@@ -446,7 +458,8 @@ void MPMFlowLattice::reflect_cells(double *values) const
 double MPMFlowLattice::memory_usage() const
 {
   return grid.memory_usage() + halo.memory_usage() +
-      bytes_of(runs, kept, cells, around, ranges, visitor_ranges, visitors, images, at_walls);
+      bytes_of(points, runs, kept, cells, around, ranges, visitor_ranges, visitors, images,
+               at_walls);
 }
 
 /* ----------------------------------------------------------------------

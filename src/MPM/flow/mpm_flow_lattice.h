@@ -40,7 +40,7 @@ struct MPMFlowWall {
  *  wall (stick). */
 class MPMFlowLattice : protected Pointers {
  public:
-  /** Points that are neighbors in memory and in the same block. */
+  /** Points from points[first] to points[last - 1], which are in the same block. */
   struct Run {
     int first, last, slot;
   };
@@ -54,6 +54,7 @@ class MPMFlowLattice : protected Pointers {
   MPM_NS::Grid grid;
   MPM_NS::Lattice &lattice;
   MPMFlowWall walls[3][2];
+  std::vector<int> points;    ///< atoms that are points, in the order of block, cell, and tag
   std::vector<Run> runs;
   std::vector<Cell> cells;      ///< owned by this rank, within walls
   std::vector<int> around;      ///< [cells][3^dim] numbers of cells around each one and itself
@@ -78,8 +79,9 @@ class MPMFlowLattice : protected Pointers {
   void check_box(const char *style);
   /** Is atom i a point of the group? */
   bool is_point(int i) const;
-  /** Puts points in the order of block, cell, and tag. */
-  void sort();
+  /** Finds the order of points, after atoms have got other numbers. Moves their data into it now and
+   *  then, and if move is true. Collective. */
+  void sort(bool move = false);
   /** Finds blocks, cells, and lists; does nothing while these are valid. */
   void find_cells();
   /** Are the cells that a point with this base reaches still among those of its run? */
@@ -165,6 +167,7 @@ class MPMFlowLattice : protected Pointers {
     int axis, side;
   };
   const int groupbit;
+  int sorts = 0;    // how often the order was found since data was moved
   mutable MPMHalo halo;
   mutable std::vector<double> kept;
   std::vector<Range> ranges;            // of bases, by slot

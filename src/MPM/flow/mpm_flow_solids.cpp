@@ -351,7 +351,8 @@ template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
   Boxes<dim> boxes;
   double t[3];
   for (const auto &run : cells.runs)
-    for (int i = run.first; i < run.last; i++) {
+    for (int nth = run.first; nth < run.last; nth++) {
+      const int i = cells.points[nth];
       if (!holds(i)) continue;
       place.find(atom->x[i], atom->vfrac[i], t);
       const auto &block = cells.grid.blocks[run.slot];
@@ -421,7 +422,8 @@ template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt,
   Boxes<dim> boxes;
   const double inv_h = 1.0 / cells.lattice.h;
   for (const auto &run : cells.runs)
-    for (int i = run.first; i < run.last; i++) {
+    for (int nth = run.first; nth < run.last; nth++) {
+      const int i = cells.points[nth];
       if (!holds(i)) continue;
       const auto &block = cells.grid.blocks[run.slot];
       double t[3] = {}, u[3];
@@ -509,7 +511,8 @@ template <int dim> void MPMFlowSolids::find_shares()
   shares.assign(cells.size() * width, 0.0);
   faces.assign(cells.size() * 2 * dim, 0.0);
   for (const auto &run : cells.runs)
-    for (int i = run.first; i < run.last; i++) {
+    for (int nth = run.first; nth < run.last; nth++) {
+      const int i = cells.points[nth];
       place.find(atom->x[i], atom->vfrac[i], t);
       boxes.find(t, place.width);
       const double all = atom->vfrac[i], solid = holds(i) ? all : 0.0;

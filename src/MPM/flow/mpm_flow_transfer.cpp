@@ -48,6 +48,10 @@ template <int dim> struct Places {
     for (int d = 0; d < dim; d++) t[d] = (x[d] - origin[d]) * inv_h;
     w.find<dim>(t);
   }
+  void find_base(const double *x, int base[3]) const
+  {
+    for (int d = 0; d < dim; d++) base[d] = StaggeredWeights::base_at((x[d] - origin[d]) * inv_h);
+  }
   void keep_inside(double *x) const
   {
     for (int d = 0; d < dim; d++)
@@ -128,7 +132,8 @@ void give(const MPMFlowLattice &cells, const MPMFlowPoints &points, std::vector<
   };
   double volume = 0.0, width_of_point = 0.0;
   for (const auto &run : cells.runs) {
-    for (int i = run.first; i < run.last; i++) {
+    for (int nth = run.first; nth < run.last; nth++) {
+      const int i = cells.points[nth];
       places.find(points.x[i], w);
       auto &to = near.at(w.base, add, [&](Gifts<dim> &gifts) {
         gifts.clear(w.base, run.slot);
@@ -199,7 +204,8 @@ void give_volumes(const MPMFlowLattice &cells, const MPMFlowPoints &points,
   StaggeredWeights w;
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
-    for (int i = run.first; i < run.last; i++) {
+    for (int nth = run.first; nth < run.last; nth++) {
+      const int i = cells.points[nth];
       places.find(points.x[i], w);
       const MPMFlowStencil<dim> reach(cells.grid, block, w.base);
       visit<dim>(reach, [&](int64_t number, const int k[3]) {
@@ -451,8 +457,10 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       at_middles(cells.grid, update.paths ? update.paths : velocity);
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
-    for (int i = run.first; i < run.last; i++) {
+    for (int nth = run.first; nth < run.last; nth++) {
+      const int i = cells.points[nth];
       double *const x = points.x[i], *const v = points.v[i];
+      int base[3];    // at the end of the step
       places.find(x, w);
       const auto &around = near.at(
           w.base,
@@ -482,8 +490,8 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       if (update.inflow && update.inflow->carry(x, v, points.dt)) {
         if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);
         places.keep_inside(x);
-        places.find(x, w);
-        all_in_reach = all_in_reach && cells.in_reach<dim>(run, w.base);
+        places.find_base(x, base);
+        all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
         continue;
       }
       if (update.old)
@@ -529,8 +537,8 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.regions->keep_outside(x, v);
         places.keep_inside(x);
       }
-      places.find(x, w);
-      all_in_reach = all_in_reach && cells.in_reach<dim>(run, w.base);
+      places.find_base(x, base);
+      all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
     }
   }
   if (update.squares) std::copy_n(squares, 2, update.squares);
@@ -546,7 +554,8 @@ void get_gradient(const MPMFlowLattice &cells, const MPMFlowPoints &points, cons
   FacesNear<dim> near(cells.grid, velocity);
   double v[dim], G[flow_slopes(dim)];
   for (const auto &run : cells.runs)
-    for (int i = run.first; i < run.last; i++) {
+    for (int nth = run.first; nth < run.last; nth++) {
+      const int i = cells.points[nth];
       places.find(points.x[i], w);
       interpolate<dim>(near.at(cells.grid.blocks[run.slot], w.base), w, v, G);
       for (int e = 0; e < flow_slopes(dim); e++) {

@@ -64,7 +64,8 @@ void MPMFlowViscosities::give(double *const *x, const double *volume, const int 
   Overlap of[2][d];    // boxes of cells, and boxes around nodes
   for (const auto &run : cells.runs) {
     const auto &block = cells.grid.blocks[run.slot];
-    for (int i = run.first; i < run.last; i++) {
+    for (int nth = run.first; nth < run.last; nth++) {
+      const int i = cells.points[nth];
       const double V = volume[i];
       double mu = viscosities[0];
       for (std::size_t k = 1; k < bits.size(); k++)

@@ -10,7 +10,6 @@
 #define MPM_LATTICE_STAGGERED_H
 
 #include <algorithm>
-#include <cmath>
 
 namespace MPM_NS {
 
@@ -37,17 +36,18 @@ inline int cell_below(double t)
  *  axis. */
 struct StaggeredWeights {
   int base[3];
-  double
-      hat[3]
-         [3];    ///< [axis][k] for faces normal to another axis, and for cells; the last one is 0
+  double hat[3][3];       ///< [axis][k] for faces normal to another axis, and for cells; the last
+                          ///< one is 0
   double spline[3][3];    ///< [axis][k] for faces normal to this axis
   double f[3];            ///< distance of the place from the middle of cell base, 0 to 1 [spacings]
+
+  static int base_at(double t) { return cell_below(t - 0.5); }
 
   /** Computes the weights at t, in node spacings from node 0. */
   template <int dim> void find(const double *t)
   {
     for (int d = 0; d < dim; d++) {
-      base[d] = cell_below(t[d] - 0.5);
+      base[d] = base_at(t[d]);
       const double x = f[d] = t[d] - 0.5 - base[d];
       hat[d][0] = 1.0 - x;
       hat[d][1] = x;
@@ -92,20 +92,17 @@ struct FillingWeights {
    *  spacings, at most 1. */
   template <int dim> void find(const double *t, double width)
   {
-    const double inverse = 1.0 / width;
+    const double half_inverse = 0.5 / width;
     for (int d = 0; d < dim; d++) {
-      first[d] = cell_below(t[d] - 0.5 - 0.5 * width);
-      for (int k = 0; k < 3; k++) {
-        const double x = t[d] - 0.5 - first[d] - k;
-        share[d][k] = (below(x + 0.5 * width) - below(x - 0.5 * width)) * inverse;
-      }
+      const double low = t[d] - 0.5 - 0.5 * width;
+      first[d] = cell_below(low);
+      // from the lower end of the point, and from its upper end, to the middle of cell first + 1
+      const double before = 1.0 - (low - first[d]), after = width - before,
+                   left = std::max(0.0, -after), right = std::max(0.0, after);
+      share[d][0] = half_inverse * (before - left) * (before + left);
+      share[d][2] = half_inverse * right * right;
+      share[d][1] = 1.0 - share[d][0] - share[d][2];
     }
-  }
-  /** Integral of the hat centered at 0 up to x. */
-  static double below(double x)
-  {
-    x = std::max(-1.0, std::min(x, 1.0));
-    return 0.5 + x * (1.0 - 0.5 * std::fabs(x));
   }
 };
 
