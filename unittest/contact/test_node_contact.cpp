@@ -82,6 +82,19 @@ TEST(NodeContact, DoesNotPull)
   }
 }
 
+// the second part of a step of musl would make the velocities across the same
+TEST(NodeContact, DoesNotTouchByRoundOff)
+{
+  for (const auto kind :
+       {MPMContactLaw::FRICTIONLESS, MPMContactLaw::COULOMB, MPMContactLaw::STICK})
+    for (const double sign : {1.0, -1.0}) {
+      Node node(kind, sign * 1e-16, 0.4);
+      node.law.friction = {0.3, 0.3};
+      node.solve();
+      EXPECT_EQ(node.contact.state, MPMNodeContact::OPEN);
+    }
+}
+
 TEST(NodeContact, SticksBelowStaticFrictionAndSlidesAbove)
 {
   Node below(MPMContactLaw::COULOMB, 1.0, 0.49), above(MPMContactLaw::COULOMB, 1.0, 0.51);

@@ -33,7 +33,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 // the approach of bodies that slide along each other is round-off, which must not decide whether
-// they stick: it must be at least this part of their speeds
+// they stick, or touch in the second part of a step of musl: it must be at least this part of their
+// speeds
 
 static constexpr double APPROACH = 1.0e-12;
 
@@ -162,19 +163,16 @@ double MPMNodeContact::limit(const MPMContactLaw &law, double mass, int dim, dou
 {
   const double unit = law.pressure_unit * area * adhesion * dt;
   const double by_water = std::max(water, 0.0);
-  double round_off = 0.0;
-  if (law.law == MPMContactLaw::STICK || law.keeps_rest) {
-    double speeds[2] = {0.0, 0.0};
-    for (int d = 0; d < dim; d++) {
-      speeds[0] += ra[d] * ra[d];
-      speeds[1] += rb[d] * rb[d];
-    }
-    round_off = APPROACH * mass * (sqrt(speeds[0]) + sqrt(speeds[1]));
+  double speeds[2] = {0.0, 0.0};
+  for (int d = 0; d < dim; d++) {
+    speeds[0] += ra[d] * ra[d];
+    speeds[1] += rb[d] * rb[d];
   }
+  const double round_off = APPROACH * mass * (sqrt(speeds[0]) + sqrt(speeds[1]));
   const bool parts = J < -round_off;
   J = std::max(J,
                by_water - (law.law == MPMContactLaw::ADHESIVE ? law.normal_strength * unit : 0.0));
-  if (law.law == MPMContactLaw::STICK && J - by_water <= round_off) J = by_water;
+  if (std::fabs(J - by_water) <= round_off) J = by_water;
   const double grains = J > by_water ? J - water : 0.0;
   const double keep = law.law == MPMContactLaw::STICK
       ? (grains > 0.0 ? 1.0 : 0.0)
