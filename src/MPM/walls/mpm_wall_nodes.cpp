@@ -150,8 +150,10 @@ void MPMWallNodes::list_region()
         if (gap >= taken) continue;
         if (!wall.moves_and_holds) s.share = cube(1.0 - cube(gap / taken));
       }
-      if (wall.kind != MPMWall::STICK || !wall.moves_and_holds) wall.normal(field, x, s.normal);
-      if (region->varshape || across) s.distance = surface->distance(x, far);
+      const bool at_surface = gap > -next;
+      if (wall.kind != MPMWall::STICK || (!wall.moves_and_holds && (region->varshape || at_surface)))
+        wall.normal(field, x, s.normal);
+      if (region->varshape || across) s.distance = at_surface ? gap : surface->distance(x, far);
       nodes.push_back(s);
     }
   }
