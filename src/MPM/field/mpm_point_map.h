@@ -87,8 +87,8 @@ class MPMPointMap : protected Pointers {
       0;    // excess of disorder over sorted_disorder, summed over the steps since the last sort
 };
 
-/** Indices of the atoms of this rank in the order of their keys; atoms with equal keys are sorted by
- *  tag.
+/** Indices of the atoms of this rank in the order of their keys; atoms with equal keys are sorted
+ *  by tag.
  *
  *  key: [nlocal] from 0 to nkeys - 1. Atoms with a negative key come last, in their present order.
  *  If LAMMPS wants the atoms of a group to be first (atom_modify first), they stay first and are

@@ -82,9 +82,9 @@ class MPMStencil {
     }
   }
 
-  /** Finds the nodes of point i without a domain, which is in the given block, and the gradients of
-   *  their functions, [n][dim] [1/distance]. The lists may be empty or those of another point, whose
-   *  numbers stay if they are the same. */
+  /** Finds the nodes of point i without a domain, which is in the given block, and the gradients
+   *  of their functions, [n][dim] [1/distance]. The lists may be empty or those of another point,
+   *  whose numbers stay if they are the same. */
   void find_gradients(const MPM_NS::Grid::Block &block, int i, std::vector<int64_t> &nodes,
                       std::vector<double> &gradients) const
   {

@@ -79,8 +79,8 @@ class MPMFlowLattice : protected Pointers {
   void check_box(const char *style);
   /** Is atom i a point of the group? */
   bool is_point(int i) const;
-  /** Finds the order of points, after atoms have got other numbers. Moves their data into it now and
-   *  then, and if move is true. Collective. */
+  /** Finds the order of points, after atoms have got other numbers. Moves their data into it now
+   *  and then, and if move is true. Collective. */
   void sort(bool move = false);
   /** Finds blocks, cells, and lists; does nothing while these are valid. */
   void find_cells();

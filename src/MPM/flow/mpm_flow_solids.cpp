@@ -13,6 +13,7 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_time_limit.h"
+#include "flow/mpm_flow_boxes.h"
 #include "flow/mpm_flow_stencil.h"
 #include "force.h"
 #include "lattice/staggered.h"
@@ -61,143 +62,6 @@ namespace {
 /** Places of components of a symmetric tensor, stored as xx yy zz xy xz yz. */
 constexpr int SYMMETRIC[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 
-/** Kinds of boxes of gradients, by the axes of one of their gradients: cells, and boxes of the
- *  shears xy, xz, yz. */
-constexpr int AXES[4][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 2}};
-constexpr int kinds(int dim)
-{
-  return dim == 2 ? 2 : 4;
-}
-constexpr int kind_of(int c, int d)
-{
-  return c == d ? 0 : c + d;
-}
-
-/** Shares of a point of some width in boxes of one spacing, which are cells or are around their
- *  corners, edges, and faces: weights along each axis, and gradients of the velocity as means of
- *  those of boxes. The gradient of a box is the difference of two faces: a normal gradient that of
- *  its cell, a shear that of the faces on both sides of a corner (in 3d an edge). */
-template <int dim> struct Boxes {
-  enum Place { CELL, NODE };
-  int first[2][3];    // [place][axis]: first one of two adjacent boxes
-  double share[2][3][2];
-
-  void find(const double *t, double width)
-  {
-    for (int place = CELL; place <= NODE; place++)
-      for (int d = 0; d < dim; d++) {
-        // from the lower end of the cell with its number to that of a box
-        const double shift = place == NODE ? 0.5 : 0.0;
-        const double low = t[d] + shift - 0.5 * width, box = std::floor(low);
-        first[place][d] = (int) box;
-        share[place][d][0] = std::min(1.0, (box + 1.0 - low) / width);
-        share[place][d][1] = 1.0 - share[place][d][0];
-      }
-  }
-
-  /** The same with the boxes that a point of the width reach, at least width, would have. */
-  void find(const double *t, double width, double reach)
-  {
-    find(t, reach);
-    for (int place = CELL; place <= NODE; place++)
-      for (int d = 0; d < dim; d++) {
-        const double low = t[d] + (place == NODE ? 0.5 : 0.0) - 0.5 * width;
-        const double first_share = (first[place][d] + 1.0 - low) / width;
-        share[place][d][0] = std::max(0.0, std::min(1.0, first_share));
-        share[place][d][1] = 1.0 - share[place][d][0];
-      }
-  }
-
-  /** Calls f(number of the cell that is a box, or has it at its lower side; share) for the boxes at
-   *  these places along each axis. */
-  template <class F>
-  void visit_boxes(const Grid &grid, const Grid::Block &block, const Place *places,
-                   const F &f) const
-  {
-    int base[3] = {0, 0, 0};
-    for (int d = 0; d < dim; d++) base[d] = first[places[d]][d];
-    const MPMFlowStencil<dim> reach(grid, block, base);
-    for_each_index<dim>({2, 2, 2}, [&](const int *k) {
-      double weight = 1.0;
-      for (int d = 0; d < dim; d++) weight *= share[places[d]][d][k[d]];
-      if (weight > 0.0) f(reach.number(k), weight);
-    });
-  }
-
-  /** Places of the boxes of the gradient along d of velocities along c. */
-  static void places_of(int c, int d, Place *places)
-  {
-    for (int e = 0; e < dim; e++) places[e] = c != d && (e == c || e == d) ? NODE : CELL;
-  }
-
-  /** Calls f(number of a cell, coefficient of the velocity of its face normal to c in the gradient
-   *  along d, in 1/spacing). */
-  template <class F>
-  void visit_gradients(const Grid &grid, const Grid::Block &block, int c, int d, const F &f) const
-  {
-    Place places[3];
-    places_of(c, d, places);
-    int base[3] = {0, 0, 0}, n[3] = {2, 2, 2};
-    n[d] = 3;
-    for (int e = 0; e < dim; e++) base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
-    const MPMFlowStencil<dim> reach(grid, block, base);
-    const double *const along = share[places[d]][d];
-    const double slope[3] = {-along[0], along[0] - along[1], along[1]};
-    for_each_index<dim>(n, [&](const int *k) {
-      double g = 1.0;
-      for (int e = 0; e < dim; e++) g *= e == d ? slope[k[e]] : share[places[e]][e][k[e]];
-      f(reach.number(k), g);
-    });
-  }
-
-  /** Calls f(k, low, high) for the boxes of the gradient along d of velocities along c; k: place of
-   *  a box along each axis, low and high: numbers of the cells of the faces of its difference. */
-  template <class F>
-  void visit_differences(const Grid &grid, const Grid::Block &block, int c, int d, const F &f) const
-  {
-    Place places[3];
-    places_of(c, d, places);
-    int base[3] = {0, 0, 0};
-    for (int e = 0; e < dim; e++) base[e] = first[places[e]][e] - (e == d && c != d ? 1 : 0);
-    const MPMFlowStencil<dim> reach(grid, block, base);
-    for_each_index<dim>({2, 2, 2}, [&](const int *k) {
-      int above[3] = {k[0], k[1], k[2]};
-      above[d]++;
-      f(k, reach.number(k), reach.number(above));
-    });
-  }
-  /** Share in box k of the gradient along d of velocities along c. */
-  double share_in(int c, int d, const int *k) const
-  {
-    Place places[3];
-    places_of(c, d, places);
-    double of_box = 1.0;
-    for (int e = 0; e < dim; e++) of_box *= share[places[e]][e][k[e]];
-    return of_box;
-  }
-
-  /** The same as visit_gradients() for a mean over boxes with other weights, weight(low, high). No
-   *  calls where these are all zero. */
-  template <class W, class F>
-  void visit_gradients_by(const Grid &grid, const Grid::Block &block, int c, int d, const W &weight,
-                          const F &f) const
-  {
-    int64_t low[8], high[8];
-    double weights[8], sum = 0.0;
-    int n = 0;
-    visit_differences(grid, block, c, d, [&](const int *k, int64_t at_low, int64_t at_high) {
-      low[n] = at_low;
-      high[n] = at_high;
-      weights[n] = weight(at_low, at_high) * share_in(c, d, k);
-      sum += weights[n++];
-    });
-    for (int j = 0; j < n && sum > 0.0; j++) {
-      f(high[j], weights[j] / sum);
-      f(low[j], -weights[j] / sum);
-    }
-  }
-};
-
 /** Removes the shear of planes with this normal from a symmetric tensor. */
 template <int dim> void take_shear_off(const double *n, double T[3][3])
 {
@@ -211,24 +75,6 @@ template <int dim> void take_shear_off(const double *n, double T[3][3])
   for (int c = 0; c < dim; c++)
     for (int d = 0; d < dim; d++) T[c][d] -= along[c] * n[d] + n[c] * along[d];
 }
-
-/** Coordinates and widths of points in spacings. */
-template <int dim> struct PlaceOfPoint {
-  const MPM_NS::Lattice &lattice;
-  double per_cell, volume = 0.0, width = 0.0;
-
-  explicit PlaceOfPoint(const MPM_NS::Lattice &lattice) :
-      lattice(lattice), per_cell(1.0 / lattice.cell_volume())
-  {
-  }
-  void find(const double *x, double point_volume, double *t)
-  {
-    for (int d = 0; d < dim; d++) t[d] = (x[d] - lattice.origin[d]) / lattice.h;
-    if (point_volume == volume) return;
-    volume = point_volume;
-    width = std::min(1.0, std::pow(volume * per_cell, 1.0 / dim));
-  }
-};
 
 template <int dim>
 void interpolate(const MPMFlowLattice &cells, const Grid::Block &block, const double *t,
@@ -347,8 +193,8 @@ template <int dim> void MPMFlowSolids::give(std::vector<double> &forces)
   find_shares<dim>();
   const double factor = 1.0 / (force->nktv2p * cells.lattice.h);
   const auto tau = MPMPoints::get(atom)->tau;
-  PlaceOfPoint<dim> place(cells.lattice);
-  Boxes<dim> boxes;
+  MPMFlowPlace<dim> place(cells.lattice);
+  MPMFlowBoxes<dim> boxes;
   double t[3];
   for (const auto &run : cells.runs)
     for (int nth = run.first; nth < run.last; nth++) {
@@ -418,8 +264,8 @@ template <int dim> void MPMFlowSolids::strain(const double *velocity, double dt,
   const auto update_points = [&](int m) {
     this->update_points(m, dt);
   };
-  PlaceOfPoint<dim> place(cells.lattice);
-  Boxes<dim> boxes;
+  MPMFlowPlace<dim> place(cells.lattice);
+  MPMFlowBoxes<dim> boxes;
   const double inv_h = 1.0 / cells.lattice.h;
   for (const auto &run : cells.runs)
     for (int nth = run.first; nth < run.last; nth++) {
@@ -504,9 +350,10 @@ void MPMFlowSolids::deform(const double *velocity, double dt, double viscosity)
 
 template <int dim> void MPMFlowSolids::find_shares()
 {
-  constexpr int KINDS = kinds(dim), width = 2 * KINDS;
-  PlaceOfPoint<dim> place(cells.lattice);
-  Boxes<dim> boxes;
+  constexpr int KINDS = MPMFlowBoxes<dim>::KINDS, width = 2 * KINDS;
+  constexpr auto &AXES = MPMFlowBoxes<dim>::AXES;
+  MPMFlowPlace<dim> place(cells.lattice);
+  MPMFlowBoxes<dim> boxes;
   double t[3];
   shares.assign(cells.size() * width, 0.0);
   faces.assign(cells.size() * 2 * dim, 0.0);
@@ -517,8 +364,8 @@ template <int dim> void MPMFlowSolids::find_shares()
       boxes.find(t, place.width);
       const double all = atom->vfrac[i], solid = holds(i) ? all : 0.0;
       for (int kind = 0; kind < KINDS; kind++) {
-        typename Boxes<dim>::Place places[3];
-        Boxes<dim>::places_of(AXES[kind][0], AXES[kind][1], places);
+        typename MPMFlowBoxes<dim>::Place places[3];
+        MPMFlowBoxes<dim>::places_of(AXES[kind][0], AXES[kind][1], places);
         boxes.visit_boxes(cells.grid, cells.grid.blocks[run.slot], places,
                           [&](int64_t number, double share) {
                             shares[width * number + 2 * kind] += solid * share;
@@ -526,9 +373,9 @@ template <int dim> void MPMFlowSolids::find_shares()
                           });
       }
       for (int c = 0; c < dim; c++) {
-        typename Boxes<dim>::Place places[3] = {Boxes<dim>::CELL, Boxes<dim>::CELL,
-                                                Boxes<dim>::CELL};
-        places[c] = Boxes<dim>::NODE;
+        typename MPMFlowBoxes<dim>::Place places[3] = {
+            MPMFlowBoxes<dim>::CELL, MPMFlowBoxes<dim>::CELL, MPMFlowBoxes<dim>::CELL};
+        places[c] = MPMFlowBoxes<dim>::NODE;
         boxes.visit_boxes(cells.grid, cells.grid.blocks[run.slot], places,
                           [&](int64_t number, double share) {
                             faces[2 * dim * number + dim + c] += all * share;
@@ -552,8 +399,9 @@ template <int dim>
 bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, double width,
                                    Interface &to) const
 {
-  constexpr int KINDS = kinds(dim);
-  Boxes<dim> boxes;
+  constexpr int KINDS = MPMFlowBoxes<dim>::KINDS;
+  constexpr auto &AXES = MPMFlowBoxes<dim>::AXES;
+  MPMFlowBoxes<dim> boxes;
   boxes.find(t, width);
   double length = 0.0, most = 0.0;
   auto &fluid = to.fluid;
@@ -561,8 +409,8 @@ bool MPMFlowSolids::find_interface(const Grid::Block &block, const double *t, do
   std::fill_n(fluid, KINDS, 0.0);
   std::fill_n(n, 3, 0.0);
   for (int kind = 0; kind < KINDS; kind++) {
-    typename Boxes<dim>::Place places[3];
-    Boxes<dim>::places_of(AXES[kind][0], AXES[kind][1], places);
+    typename MPMFlowBoxes<dim>::Place places[3];
+    MPMFlowBoxes<dim>::places_of(AXES[kind][0], AXES[kind][1], places);
     boxes.visit_boxes(cells.grid, block, places, [&](int64_t number, double share) {
       const double *const s = shares.data() + 2 * KINDS * number + 2 * kind;
       if (s[1] > 0.0) fluid[kind] += share * (1.0 - s[0] / s[1]);
@@ -620,7 +468,7 @@ template <int dim>
 MPMFlowSolids::Air MPMFlowSolids::find_air(const Grid::Block &block, const double *t,
                                            double width) const
 {
-  Boxes<dim> narrow, wide;
+  MPMFlowBoxes<dim> narrow, wide;
   narrow.find(t, width, 1.0);
   wide.find(t, 1.0, 1.0);
   Air air;
@@ -648,7 +496,7 @@ void MPMFlowSolids::visit_gradients_in_air(const Grid::Block &block, const doubl
                                            const Air &air, int c, int d, const F &f) const
 {
   if (air.hold == 0.0) return;
-  Boxes<dim> narrow, wide;
+  MPMFlowBoxes<dim> narrow, wide;
   narrow.find(t, width, 1.0);
   wide.find(t, 1.0, 1.0);
   const double factor = air.hold / air.all[c][d];
@@ -701,13 +549,13 @@ void MPMFlowSolids::leave_to_fluid(int i, const Interface &interface, double sti
   double share = 0.0;
   for (int c = 0; c < dim; c++)
     for (int d = 0; d < dim; d++)
-      share += fluid[kind_of(c, d)] * traction[c] * n[d] *
+      share += fluid[MPMFlowBoxes<dim>::kind_of(c, d)] * traction[c] * n[d] *
           (traction[c] * n[d] + traction[d] * n[c]) / square;
   const double resistance =
       viscosity + std::max(share, LEAST_SHARE * interface.most) * stiffness * dt;
   for (int c = 0; c < dim; c++)
     for (int d = 0; d < dim; d++)
-      A[c][d] -= fluid[kind_of(c, d)] * dt / resistance * traction[c] * n[d];
+      A[c][d] -= fluid[MPMFlowBoxes<dim>::kind_of(c, d)] * dt / resistance * traction[c] * n[d];
 }
 
 /** Loads the present state of the points that wait for their law. */

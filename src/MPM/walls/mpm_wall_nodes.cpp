@@ -151,7 +151,8 @@ void MPMWallNodes::list_region()
         if (!wall.moves_and_holds) s.share = cube(1.0 - cube(gap / taken));
       }
       const bool at_surface = gap > -next;
-      if (wall.kind != MPMWall::STICK || (!wall.moves_and_holds && (region->varshape || at_surface)))
+      if (wall.kind != MPMWall::STICK ||
+          (!wall.moves_and_holds && (region->varshape || at_surface)))
         wall.normal(field, x, s.normal);
       if (region->varshape || across) s.distance = at_surface ? gap : surface->distance(x, far);
       nodes.push_back(s);
