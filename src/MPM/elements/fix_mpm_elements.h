@@ -48,12 +48,12 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   void setup(int) override
   {
     compute(true);
-    if (!has_lattice) check_free_dt();
+    has_lattice ? look_for_gaps(true) : check_free_dt();
   }
   void post_neighbor() override
   {
     find_nodes();
-    if (!has_lattice) check_free_dt();    // with a lattice, fix mpm checks the time step
+    has_lattice ? look_for_gaps(false) : check_free_dt();    // fix mpm checks the time step
   }
   void post_force(int) override
   {
@@ -158,6 +158,8 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   MPMUncoupled uncoupled;       // other matter, if none does
   double reached_from = 0.0;    // see will_be_reached_from()
   bool warned_slack = false;    // in this run
+  bool may_leak = false;        // is other matter on the lattice of a surface, without a warning?
+  double spacing_of_field = 0.0;
   double spent = 0.0;    // plastic and other dissipated work without a lattice, this rank's share
   class FixMPMMaterial *material;    // found again at the start of each run
   std::string variables;             // names of its history variables, in the order of the pool
@@ -182,6 +184,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   void compute(bool starting);
   void give_means_to_nodes();
   void check_free_dt();
+  void look_for_gaps(bool starting);
   void keep_spent(const std::function<void()> &strain);
   void take_motion(const double *u);
   template <class Add> void add_over_ranks(double *to, const Add &add);
