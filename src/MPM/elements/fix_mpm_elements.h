@@ -48,12 +48,18 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   void setup(int) override
   {
     compute(true);
-    has_lattice ? look_for_gaps(true) : check_free_dt();
+    if (has_lattice)
+      look_for_gaps(true);
+    else
+      check_free_dt();
   }
   void post_neighbor() override
   {
     find_nodes();
-    has_lattice ? look_for_gaps(false) : check_free_dt();    // fix mpm checks the time step
+    if (has_lattice)    // fix mpm checks the time step
+      look_for_gaps(false);
+    else
+      check_free_dt();
   }
   void post_force(int) override
   {
