@@ -135,11 +135,10 @@ double MPMHeatFlow::longest_wait() const
   return t;
 }
 
-/** Would temperatures at their present rates differ by a fifth more or less at the end of the step?
- *  They jump then, as when a surface is suddenly at another temperature. Collective. */
+/** Would temperatures at their present rates differ more at the end of the step than now? They jump
+ *  then, as when a surface is suddenly at another temperature. Collective. */
 bool MPMHeatFlow::jumps() const
 {
-  constexpr double SUDDEN = 0.2;
   constexpr int N = 4;    // temperatures and rates, and minus these
   double mine[N], all[N];
   std::fill_n(mine, N, -std::numeric_limits<double>::max());
@@ -147,8 +146,7 @@ bool MPMHeatFlow::jumps() const
     if (!field->conducts()) continue;
     const auto &capacity = field->node_capacity();
     for (std::size_t k = 0; k < capacity.size(); k++) {
-      // images have a part of the sums only, which depends on the ranks
-      if (!(capacity[k] > 0.0) || !field->field.grid.owns(k)) continue;
+      if (!(capacity[k] > 0.0)) continue;
       const double T = field->temperature[k], rate = field->rate[k];
       mine[0] = std::max(mine[0], T);
       mine[1] = std::max(mine[1], -T);
@@ -158,7 +156,7 @@ bool MPMHeatFlow::jumps() const
   }
   MPI_Allreduce(mine, all, N, MPI_DOUBLE, MPI_MAX, world);
   const double range = all[0] + all[1], round_off = ROUND_OFF * std::max(all[0], all[1]);
-  return dt_last * (all[2] + all[3]) > SUDDEN * range + round_off;
+  return dt_last * (all[2] + all[3]) > range + round_off;
 }
 
 /** One explicit step of all temperatures. */
