@@ -222,7 +222,6 @@ TEST(Vortices, RanksAndRestart)
   EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
 }
 
-// with steps that go as the square of the spacing, in velocities of all points
 // the data of points is moved at the start of a run, and seldom after that
 TEST(Vortices, SumsDoNotDependOnTheOrderOfData)
 {
@@ -231,6 +230,7 @@ TEST(Vortices, SumsDoNotDependOnTheOrderOfData)
   EXPECT_TRUE(identical(whole.gather(), parts.gather()));
 }
 
+// with steps that go as the square of the spacing, in velocities of all points
 SERIAL_TEST(Vortices, Order)
 {
   double error[2];
