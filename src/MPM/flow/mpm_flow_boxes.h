@@ -33,6 +33,8 @@ template <int dim> struct MPMFlowBoxes {
   int first[2][3];    // [place][axis]: first one of two adjacent boxes
   double share[2][3][2];
 
+  /** Finds the boxes and shares of a point at t, in spacings from node 0. width: of the point, in
+   *  spacings, at most 1. */
   void find(const double *t, double width)
   {
     for (int place = CELL; place <= NODE; place++)
@@ -151,7 +153,8 @@ template <int dim> struct MPMFlowBoxes {
   }
 };
 
-/** Coordinates and widths of points in spacings. */
+/** Coordinates of points in spacings from node 0, and their widths in spacings: those of cubes of
+ *  their volumes, at most 1. */
 template <int dim> struct MPMFlowPlace {
   const MPM_NS::Lattice &lattice;
   double per_cell, volume = 0.0, width = 0.0;

@@ -36,11 +36,11 @@ inline int cell_below(double t)
  *  axis. */
 struct StaggeredWeights {
   int base[3];
-  double hat[3][3];       ///< [axis][k] for faces normal to another axis, and for cells; the last
-                          ///< one is 0
+  double hat[3][3];       ///< [axis][k] for faces normal to other axes, and for cells; last one 0
   double spline[3][3];    ///< [axis][k] for faces normal to this axis
   double f[3];            ///< distance of the place from the middle of cell base, 0 to 1 [spacings]
 
+  /** The base of a place t along an axis, in node spacings from node 0. */
   static int base_at(double t) { return cell_below(t - 0.5); }
 
   /** Computes the weights at t, in node spacings from node 0. */
