@@ -220,7 +220,7 @@ SERIAL_TEST(Plan, StagesReadWhatOthersWrote)
     chosen.has_gas = gas;
     chosen.gas_law.p = 1.0e5;
     const MPMRows none;
-    MPMFlow flow(scene.lmp, chosen, 1, "w", none);
+    MPMFlow flow(scene.lmp, chosen, 1, "w", none, none);
     start(flow);
     std::set<std::string> known = {"points"}, names;
     for (const auto &stage : flow.plan().list()) {
@@ -241,7 +241,9 @@ SERIAL_TEST(Plan, MovesPointsAsTheFixDoes)
   Scene one(water() + "run 0\n"),
       two(water() + "fix w all mpm/incompressible 0.1 1000 transfer pic\n");
   const MPMRows none;
-  MPMFlow flow(one.lmp, options(), 1, "w", none);
+  std::vector<double> beyond_middle(2 * one.lmp->atom->nmax, 0.0);
+  const MPMRows ahead = {beyond_middle.data(), 2};
+  MPMFlow flow(one.lmp, options(), 1, "w", none, ahead);
   start(flow);
   for (int step = 0; step < STEPS; step++) flow.step();
   two.commands(strprintf("run %d\n", STEPS));

@@ -195,8 +195,8 @@ SERIAL_TEST(FlowSolids, LayerUnderAFlow)
   for (const double density : first_of(1, {2.0, 1.0}))
     for (const double a : first_of(1, {0.5625, 0.5})) {
       const Layer layer = {a, density, 0.1, 1.0, 4.0};
-      const double coarse = error_of_layer(8, layer), fine = error_of_layer(16, layer);
-      EXPECT_LT(coarse, 0.05);
+      const double coarse = error_of_layer(16, layer), fine = error_of_layer(32, layer);
+      EXPECT_LT(coarse, 0.0125);
       EXPECT_GT(measured("order", std::log2(coarse / fine)), 1.5);
     }
 }

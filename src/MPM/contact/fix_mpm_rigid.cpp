@@ -447,6 +447,7 @@ void FixMPMRigid::place_in_region(const double *at, double *place) const
 void FixMPMRigid::predict(double duration, double *u, double *inverse)
 {
   const MPMRigidMotion before = *this;
+  take_back();
   load_impulse(duration);
   hold();
   spin();
@@ -456,14 +457,40 @@ void FixMPMRigid::predict(double duration, double *u, double *inverse)
   static_cast<MPMRigidMotion &>(*this) = before;
 }
 
-void FixMPMRigid::go_on(double dt, const double *impulse_of_flow)
+/** Velocities of the middle of the last step. */
+void FixMPMRigid::take_back()
+{
+  for (int d = 0; d < 3; d++) {
+    v[d] -= ahead[d];
+    L[d] -= ahead[3 + d];
+  }
+  std::fill_n(ahead, 6, 0.0);
+}
+
+void FixMPMRigid::strike(const double *J)
+{
+  push(J);
+  spin();
+}
+
+void FixMPMRigid::go_on(double dt, double kick, double goes_on, const double *impulse_of_flow,
+                        const double *struck)
 {
   dt_last = dt;
-  std::copy_n(impulse_of_flow, 6, impulse);
-  load_impulse(dt);
+  for (int i = 0; i < 6; i++) impulse[i] = dt / kick * impulse_of_flow[i] + struck[i];
+  take_back();
+  const MPMRigidMotion before = *this;
+  load_impulse(kick);
   hold();
-  push(impulse);
+  push(impulse_of_flow);
   move(dt);
+  for (int d = 0; d < 3; d++) {
+    ahead[d] = goes_on * (v[d] - before.v[d]);
+    ahead[3 + d] = goes_on * (L[d] - before.L[d]);
+    v[d] += ahead[d];
+    L[d] += ahead[3 + d];
+  }
+  spin();
   check_motion(dt);
 }
 

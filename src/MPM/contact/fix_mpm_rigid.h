@@ -22,6 +22,7 @@ FixStyle(mpm/rigid,FixMPMRigid);
 #include "fix.h"
 #include "math_extra.h"
 
+#include <algorithm>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -79,8 +80,16 @@ class FixMPMRigid :
   /** Finds velocity and angular velocity u[6] after loads of this duration, and inverse [6][6],
    *  their change by an impulse and its moment about the center. Does not change the body. */
   void predict(double duration, double *u, double *inverse);
-  /** Moves the body by a step with its loads and this impulse and moment [6] of the flow. */
-  void go_on(double dt, const double *impulse_of_flow);
+  /** Moves the body by a step of duration dt, with this impulse and moment [6] of the flow and the
+   *  loads of a duration kick that ends in the middle of the step. goes_on: share of the change of
+   *  velocities that belongs to the rest of the step. struck: [6] what strike() gave the body in this
+   *  step. */
+  void go_on(double dt, double kick, double goes_on, const double *impulse_of_flow,
+             const double *struck);
+  /** Gives the body an impulse and its moment [6]. */
+  void strike(const double *J);
+  /** The velocities are those of the middle of a step. */
+  void forget() { std::fill_n(ahead, 6, 0.0); }
 
  private:
   double first[3];    // center of the body in the region
@@ -89,6 +98,7 @@ class FixMPMRigid :
 
   void find_shape();
   void load_impulse(double dt);
+  void take_back();
   double speed() const;
   double spacing_of_flow() const;
   void check_motion(double dt) const;

@@ -381,8 +381,8 @@ void MPMSuperStep::advance(int n, double dt, const std::function<void()> &find_r
   }
 }
 
-void MPMSuperStep::advance_from_jump(double dt, double limit,
-                                     const std::function<void()> &find_rates)
+void MPMSuperStep::advance_in_parts(double dt, double limit,
+                                    const std::function<void()> &find_rates)
 {
   double part = dt, left = dt;
   while (part > limit) part *= 0.5;

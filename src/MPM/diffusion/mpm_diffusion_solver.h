@@ -170,9 +170,9 @@ class MPMSuperStep {
   void advance(int stages, double dt, const std::function<void()> &find_rates,
                bool rates_known = false);
   /** Make one step in parts, the first one not longer than the explicit limit, each of the others
-   *  as long as all before it: for values that jump in space, as RKL2 removes only half of what
-   *  decays much faster than a step. Rates must be known. It has some 2.4 times as many stages. */
-  void advance_from_jump(double dt, double limit, const std::function<void()> &find_rates);
+   *  as long as all before it, as RKL2 removes only half of what decays much faster than a step.
+   *  Rates must be known. It has some 2.4 times as many stages. */
+  void advance_in_parts(double dt, double limit, const std::function<void()> &find_rates);
 
   /** The limit of a step with one stage, with a margin. greatest: bound of the eigenvalues of minus
    *  the rates [1/time]. */

@@ -71,6 +71,7 @@ class FixMPMIncompressible :
   MPMSetUp set_up;
   std::unique_ptr<MPMFlow> flow;
   MPMRows gradient;       // [n][flow_slopes(dim)] of velocities of points, with apic
+  MPMRows ahead;          // [n][dim] what velocities have beyond the middle of the last step
   double travel = 0.0;    // largest distance that points have moved since neighbor lists were made
 
   double gas_value(int k) const;

@@ -56,12 +56,12 @@ static constexpr double FITTED = 1.0e-12, FIT = 1.5;
 static constexpr double SAME_VELOCITIES = 1.0e-11;
 
 MPMFlow::MPMFlow(LAMMPS *lmp, const MPMIncompressibleOptions &chosen, int groupbit,
-                 const std::string &id, const MPMRows &gradient) :
+                 const std::string &id, const MPMRows &gradient, const MPMRows &ahead) :
     Pointers(lmp),
     options(chosen), liquids(lmp, options), parts(lmp, options, liquids, fields, groupbit),
     checks(lmp, options, liquids, parts, id), groupbit(groupbit), id(id),
     who(fmt::format("Fix mpm/incompressible {}", id)), gradient(gradient),
-    momentum(lmp, options, liquids, parts, fields, results, who)
+    ahead(ahead), momentum(lmp, options, liquids, parts, fields, results, who)
 {
   results.regions.assign(3 * options.region_ids.size(), 0.0);
   choose_transfer();
@@ -191,7 +191,7 @@ void MPMFlow::make_plan()
     });
   if (parts.bodies)
     stages.add("bodies", {"pressures"}, {"bodies"}, [this] {
-      parts.bodies->move(now.dt);
+      parts.bodies->move(now.dt, now.kick, now.goes_on);
     });
   if (parts.solids)
     stages.add("strain of solids", {"velocity"}, {"points"}, [this] {
@@ -204,11 +204,12 @@ void MPMFlow::make_plan()
 }
 
 /* ----------------------------------------------------------------------
-   Forces act for the duration of this step, in two parts: 1/(1 + R) before points move, and R/(1 +
-   R) in what comes once more. The pressure has to remove the divergence that the motion in the step
-   before has made, within 1/(1 + R) of the duration of that step. Where the two durations differ,
-   there is one solve for the velocities, and one with the forces of the former duration. The latter
-   gives the pressure and, in proportion to the durations, what comes once more.
+   Forces act for half of the step before and half of this one, in two parts: 1/(1 + R) before
+   points move, and R/(1 + R) in what comes once more. The pressure has to remove the divergence
+   that the motion in the step before has made, within 1/(1 + R) of the duration of that step. Where
+   the two durations differ, there is one solve for the velocities, and one with the forces of the
+   former duration. The latter gives the pressure and, in proportion to the durations, what comes
+   once more.
 
    What makes velocities that points have been given a flow is an impulse at the start of the step,
    and does not come once more.
@@ -216,34 +217,56 @@ void MPMFlow::make_plan()
 
 void MPMFlow::begin_step()
 {
-  const double dt = update->dt, before = dt_before > 0.0 ? dt_before : dt;
-  now = {dt, before, 1.0 / (1.0 + options.reflect), std::fabs(dt - before) > DIFFERENT_DT * dt,
+  const bool whole = parts.grains || parts.stress;
+  const double dt = update->dt, kick = whole ? dt : 0.5 * (dt_before + dt),
+               before = dt_before > 0.0 ? dt_before : kick;
+  now = {dt,
+         kick,
+         before,
+         1.0 / (1.0 + options.reflect),
+         whole ? 0.0 : 0.5 * dt / kick,
+         std::fabs(kick - before) > DIFFERENT_DT * kick,
          false};
   dt_before = dt;
+  results.iterations = 0.0;
+  take_back();
+}
+
+/** Velocities in the middle of the last step. New ones are those of now. */
+void MPMFlow::take_back()
+{
+  if (is_new && parts.bodies) parts.bodies->forget();
+  const int dim = parts.cells.lattice.dim;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!parts.cells.is_point(i)) continue;
+    for (int d = 0; d < dim && !is_new; d++) atom->v[i][d] -= ahead[i][d];
+    std::fill_n(ahead[i], dim, 0.0);
+  }
 }
 
 void MPMFlow::find_flow()
 {
-  const double dt = now.dt, before = now.dt_before;
+  const double kick = now.kick, before = now.dt_before;
   std::vector<double> impulse;
-  if (is_new && options.reflect > 0.0) {
+  if (is_new && (now.goes_on > 0.0 || options.reflect > 0.0)) {
     momentum.strike();
     impulse = parts.pressure->psi;
     fields.initial = fields.predicted = fields.velocity;
   }
-  momentum.solve(now.part * (now.differs ? before : dt));
-  for (std::size_t k = 0; k < impulse.size(); k++) parts.pressure->psi[k] += now.part * impulse[k];
-  momentum.find_pressures(now.part * (now.differs ? before : dt) *
+  momentum.solve(now.part * (now.differs ? before : kick));
+  for (std::size_t k = 0; k < impulse.size(); k++)
+    parts.pressure->psi[k] += now.part * kick / now.dt * impulse[k];
+  momentum.find_pressures(now.part * (now.differs ? before : kick) *
                           liquids.acceleration_per_stress());
   if (options.reflect > 0.0) {
-    const double again = options.reflect * (now.differs ? dt / before : 1.0);
+    const double again = options.reflect * (now.differs ? kick / before : 1.0);
     fields.change.resize(fields.velocity.size());
     for (std::size_t k = 0; k < fields.velocity.size(); k++)
       fields.change[k] = again * (fields.velocity[k] - fields.initial[k]);
   }
   if (now.differs) {
     fields.predicted = fields.initial;
-    momentum.solve(now.part * dt);
+    momentum.solve(now.part * kick);
   }
 }
 
@@ -279,7 +302,8 @@ void MPMFlow::points_to_faces()
     parts.cells.reflect_velocities(fields.predicted.data());
   }
   now.keeps = options.flip > 0.0 || options.transfer == MPMIncompressibleOptions::AUTO;
-  if (now.keeps || options.reflect > 0.0 || now.differs) fields.initial = fields.predicted;
+  if (now.keeps || options.reflect > 0.0 || now.differs || is_new)
+    fields.initial = fields.predicted;
 }
 
 void MPMFlow::find_wet_cells()
@@ -297,6 +321,8 @@ void MPMFlow::faces_to_points()
                                              : fields.initial.data(),
                                 options.reflect,
                                 options.reflect > 0.0 ? fields.change.data() : nullptr,
+                                now.goes_on,
+                                is_new && now.goes_on > 0.0 ? fields.initial.data() : nullptr,
                                 options.spread > 0.0 ? fields.shift.data() : nullptr,
                                 parts.regions.get(),
                                 parts.inflow.get(),
@@ -323,7 +349,7 @@ void MPMFlow::sum_last_step(bool valid, double *all) const
 
 MPMFlowPoints MPMFlow::points_now(double dt) const
 {
-  return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt};
+  return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt, ahead};
 }
 
 /** Velocities of faces from the momentum of points, and filled shares; both are complete. */

@@ -25,7 +25,14 @@ struct MPMFlowPoints;
 /** Incompressible flow with free surfaces: its parts, and its step as a list of stages.
  *
  *  Points give momentum to the faces of a staggered lattice, forces and the pressure change the
- *  velocities of the faces, and points move with these velocities. */
+ *  velocities of the faces, and points move with these velocities.
+ *
+ *  The velocities of the lattice are those of the middle of a step, so that places are of second
+ *  order in time (leapfrog): forces act from the middle of the step before to that of this one, and
+ *  in the first step for half of it. Velocities of points go on from there to the end of the step
+ *  with half of their change. What they have thereby, *ahead*, is taken back at the start of the next
+ *  step. In a flow with grains, whose velocities are those of the ends of steps, and with implicit
+ *  viscosity, which is of first order, forces act for whole steps, and nothing goes on. */
 class MPMFlow : protected Pointers {
  public:
   MPMIncompressibleOptions
@@ -37,9 +44,9 @@ class MPMFlow : protected Pointers {
   MPMFlowChecks checks;
 
   /** groupbit: of the points. id: of the fix, for messages. gradient: [n][flow_slopes(dim)]
-   *  gradients of the velocities of points, or null; see has_gradients(). */
+   *  gradients of the velocities of points, or null; see has_gradients(). ahead: [n][dim]. */
   MPMFlow(class LAMMPS *, const MPMIncompressibleOptions &, int groupbit, const std::string &id,
-          const MPMRows &gradient);
+          const MPMRows &gradient, const MPMRows &ahead);
 
   /** Do points have gradients of their velocities? */
   bool has_gradients() const;
@@ -76,14 +83,15 @@ class MPMFlow : protected Pointers {
  private:
   const int groupbit;
   const std::string id, who;
-  const MPMRows &gradient;
+  const MPMRows &gradient, &ahead;
   MPMFlowMomentum momentum;
   MPMStageList stages;
 
-  // of this step: its duration and that of the one before, share of it in which forces act before
-  // points move; do the durations differ, and do points keep a part of their velocities?
+  // of this step: its duration, that of forces, and that of the motion before; the share of forces
+  // that acts before points move; the share of the change by which velocities go on to the end of
+  // the step; do the durations differ, and do points keep a part of their velocities?
   struct {
-    double dt, dt_before, part;
+    double dt, kick, dt_before, part, goes_on;
     bool differs, keeps;
   } now = {};
   double dt_before = 0.0;    // duration of the last step; 0: none so far, or velocities are new
@@ -101,6 +109,7 @@ class MPMFlow : protected Pointers {
   void choose_transfer();
   void make_plan();
   void begin_step();
+  void take_back();
   void find_cells();
   void find_apertures();
   void points_to_faces();

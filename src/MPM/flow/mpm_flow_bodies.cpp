@@ -23,7 +23,7 @@ void MPMFlowBodies::init()
 {
   bodies.clear();
   for (int wall = 0; wall < regions.n(); wall++)
-    if (auto *fix = regions.body(wall)) bodies.push_back({fix, wall, {}, {}, {}, {}});
+    if (auto *fix = regions.body(wall)) bodies.push_back({fix, wall, {}, {}, {}, {}, {}});
 }
 
 void MPMFlowBodies::find_rows(Body &body, const MPMFlowPressure &pressure) const
@@ -120,10 +120,24 @@ void MPMFlowBodies::end(const double *psi)
          }));
 }
 
-void MPMFlowBodies::move(double dt)
+void MPMFlowBodies::strike()
 {
   for (auto &body : bodies) {
-    body.fix->go_on(dt, body.impulse.data());
+    body.fix->strike(body.impulse.data());
+    body.struck = body.impulse;
+  }
+}
+
+void MPMFlowBodies::move(double dt, double kick, double goes_on)
+{
+  for (auto &body : bodies) {
+    body.fix->go_on(dt, kick, goes_on, body.impulse.data(), body.struck.data());
+    body.struck = {};
     regions.set_velocity(body.wall, body.u);
   }
+}
+
+void MPMFlowBodies::forget()
+{
+  for (auto &body : bodies) body.fix->forget();
 }

@@ -57,8 +57,14 @@ class MPMFlowBodies {
   void add(const double *x, double *y) const;
   /** Adds the effect of the potentials to the velocities of bodies and walls. Collective. */
   void end(const double *psi);
-  /** Moves bodies, with their present velocities, to the end of the step. */
-  void move(double dt);
+  /** Gives bodies the impulse of a duration of zero, by which the flow starts. */
+  void strike();
+  /** Moves bodies, with their present velocities, to the end of a step of duration dt in which
+   *  forces have acted for a duration kick. goes_on: share of the change of velocities that they get
+   *  once more at the end. */
+  void move(double dt, double kick, double goes_on);
+  /** Velocities of bodies are those of now, and not of the end of the last step. */
+  void forget();
 
  private:
   using Six = std::array<double, 6>;
@@ -74,6 +80,7 @@ class MPMFlowBodies {
     std::vector<Row> rows;       // of wet cells that this rank owns
     double u[6], inverse[36];    // velocities; inverse matrix of masses
     Six impulse;                 // of this step
+    Six struck;                  // impulse at its start
   };
   class LAMMPS *const lmp;
   const MPMFlowLattice &cells;

@@ -97,8 +97,13 @@ void MPMFlowMomentum::solve(double duration)
 void MPMFlowMomentum::strike()
 {
   fields.shift.assign(fields.predicted.size(), 0.0);
-  project(0.0, rounding());
+  by_solids.assign(parts.solids ? fields.predicted.size() : 0, 0.0);
+  hold();
+  results.iterations = project(0.0, rounding()).iterations;
+  if (parts.bodies) parts.bodies->strike();
+  if (parts.inflow) fields.predicted.swap(without_hold);
   extend_into_air();
+  if (parts.inflow) parts.inflow->hold(fields.velocity, nullptr);
 }
 
 /** The same for a duration in one part. Returns the outcome of the implicit viscosity; if it has
@@ -124,7 +129,7 @@ SolveReport MPMFlowMomentum::solve_part(double duration)
     parts.inflow->hold(fields.velocity, nullptr);
     check_inflow();
   }
-  results.iterations = report.iterations;
+  results.iterations = std::max(results.iterations, (double) report.iterations);
   results.residual = report.right_side > 0.0 ? report.residuals.back() / report.right_side : 0.0;
   results.divergence = parts.pressure->largest_divergence(fields.velocity.data());
   return viscous;
@@ -137,9 +142,15 @@ void MPMFlowMomentum::hold_and_resist(double duration)
   if (parts.grains) {
     parts.grains->begin(duration, fields.sums, fields.filled, before_forces, fields.predicted);
     mobility = parts.grains->mobility();
-  } else if (parts.inflow)
-    mobility.assign(fields.predicted.size(), 1.0);
+  }
+  hold();
+}
+
+/** Velocities in inlets. */
+void MPMFlowMomentum::hold()
+{
   if (parts.inflow) {
+    if (!parts.grains) mobility.assign(fields.predicted.size(), 1.0);
     without_hold = fields.predicted;
     parts.inflow->hold(fields.predicted, &mobility);
   }

@@ -64,6 +64,7 @@ class MPMFlowMomentum : protected Pointers {
   void add_stress(double dt);
   void add_viscosity(double dt);
   void hold_and_resist(double duration);
+  void hold();
   double rounding() const;
   void find_tension(double duration);
   void check_tension() const;

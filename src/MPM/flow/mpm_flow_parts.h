@@ -57,7 +57,7 @@ struct MPMFlowFields {
 
 /** Results of a step. Those of parts of the box are the shares of this rank. */
 struct MPMFlowResults {
-  double iterations = 0.0;            ///< of the pressure
+  double iterations = 0.0;            ///< of the pressure, most of a solve
   double viscous_iterations = 0.0;    ///< of the implicit viscosity
   double residual = 0.0;              ///< what is left of the divergence, relative
   double divergence = 0.0;            ///< largest |div v|, of this rank

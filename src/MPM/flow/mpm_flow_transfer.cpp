@@ -306,7 +306,7 @@ void interpolate(const Faces<dim> &faces, const StaggeredWeights &w, double *v, 
   std::copy_n(one[0], dim, v);
 }
 
-/** The same for one to three fields. */
+/** The same for one to four fields. */
 template <int dim, bool slopes>
 void interpolate_all(int nfield, const Faces<dim> *fields, const StaggeredWeights &w,
                      double (*v)[dim], double *G, double *bend)
@@ -315,8 +315,10 @@ void interpolate_all(int nfield, const Faces<dim> *fields, const StaggeredWeight
     interpolate<dim, 1, slopes>(fields, w, v, G, bend);
   else if (nfield == 2)
     interpolate<dim, 2, slopes>(fields, w, v, G, bend);
-  else
+  else if (nfield == 3)
     interpolate<dim, 3, slopes>(fields, w, v, G, bend);
+  else
+    interpolate<dim, 4, slopes>(fields, w, v, G, bend);
 }
 
 /** Moves a velocity and its gradients, G: [flow_slopes(dim)], to a place that is shift away. */
@@ -390,7 +392,7 @@ void add_viscous(double viscosity, const double *thick, double h, const double *
 
 /** What points with the same base get. */
 template <int dim> struct Around {
-  Faces<dim> fields[4];
+  Faces<dim> fields[5];
   double pressure[MPMFlowStencil<dim>::CELLS];
   Thickness<dim> thickness;
 
@@ -445,9 +447,12 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
   StaggeredWeights w;
   bool all_in_reach = true;
   double squares[2] = {0.0, 0.0};
-  const double *fields[4] = {velocity};    // and, if there are such: those before, the shift, more
-  const int at_old = 1, at_shift = update.old ? 2 : 1, at_more = at_shift + (update.shift ? 1 : 0);
+  // and, if there are such: those before, those after an impulse, the shift, more
+  const double *fields[5] = {velocity};
+  const int at_old = 1, at_struck = update.old ? 2 : 1, at_shift = at_struck + !!update.struck,
+            at_more = at_shift + (update.shift ? 1 : 0);
   if (update.old) fields[at_old] = update.old;
+  if (update.struck) fields[at_struck] = update.struck;
   if (update.shift) fields[at_shift] = update.shift;
   if (update.more) fields[at_more] = update.more;
   const int nall = at_more + (update.more ? 1 : 0);
@@ -472,7 +477,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       constexpr int NSLOPE = flow_slopes(dim);
       const bool solid = update.solids && update.solids->holds(i);
       const int nfield = at_shift + (update.shift && !solid ? 1 : 0);
-      double at_point[3][dim], G[NSLOPE], bend[dim], more[dim] = {}, G_more[NSLOPE];
+      double at_point[4][dim], G[NSLOPE], bend[dim], more[dim] = {}, G_more[NSLOPE];
       points.gradient || update.viscosity > 0.0
           ? interpolate_all<dim, true>(nfield, around.fields, w, at_point, G, bend)
           : interpolate_all<dim, false>(nfield, around.fields, w, at_point, nullptr, nullptr);
@@ -489,11 +494,14 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
 
       if (update.inflow && update.inflow->carry(x, v, points.dt)) {
         if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);
+        std::fill_n(points.ahead[i], dim, 0.0);
         places.keep_inside(x);
         places.find_base(x, base);
         all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
         continue;
       }
+      double *const ahead = points.ahead[i];
+      std::copy_n(update.struck ? at_point[at_struck] : v, dim, ahead);
       if (update.old)
         keep_unseen<dim>(update, points.mass[i], now, at_point[at_old], bend, v, squares);
       else
@@ -503,6 +511,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         for (int c = 0; c < dim; c++) v[c] += more[c];
         for (int e = 0; points.gradient && e < NSLOPE; e++) G[e] += G_more[e];
       }
+      for (int c = 0; c < dim; c++) ahead[c] = update.goes_on * (v[c] - ahead[c]);
       if (points.gradient)
         for (int e = 0; e < NSLOPE; e++)
           points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
@@ -537,6 +546,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.regions->keep_outside(x, v);
         places.keep_inside(x);
       }
+      for (int c = 0; c < dim; c++) v[c] += ahead[c];
       places.find_base(x, base);
       all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
     }

@@ -188,7 +188,6 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   void each_surface_term(const MPMConduction &, double dt, const Term &) const;
   void let_faster_points_go();
   void solve();
-  bool jumps() const;
   void advance(int stages);
 };
 
