@@ -166,29 +166,25 @@ SERIAL_TEST(Vortices, DecayAsTheyShould)
   const int n = 64;
   struct Case {
     const char *options;
-    double in_stream;    // of what is left of the error of time, which is less with reflect 0.9
+    double at_rest, in_stream;    // error of the velocity; reflect 0.9 has less of the step in it
   };
-  for (const Case &one : first_of(1,
-                                  {Case{"reflect 0.9", 1.2}, Case{"reflect 0.8", 1.6},
-                                   Case{"reflect 0.8 transfer aflip 0.98", 1.6},
-                                   Case{"reflect 0.8 transfer apic", 2.1}})) {
-    double at_rest = 0.0;
+  for (const Case &one :
+       first_of(1,
+                {Case{"reflect 0.9", 0.0015, 0.0024}, Case{"reflect 0.8", 0.001, 0.0034},
+                 Case{"reflect 0.8 transfer aflip 0.98", 0.001, 0.0034},
+                 Case{"reflect 0.8 transfer apic", 0.003, 0.0063}})) {
+    const bool apic = std::strstr(one.options, "apic");
     for (const double drift : {0.0, 1.0}) {
       Scene run(vortices(n, 0.01, drift, one.options) + "timestep 0.002\nrun 500\n");
       const auto e = errors_of(run, n, 0.01, drift);
       EXPECT_NEAR(measured("decay of the velocity over that of theory", e.factor), 1.0, 0.004);
-      EXPECT_LT(measured("error of the velocity", e.velocity), drift > 0.0 ? 0.008 : 0.004);
+      EXPECT_LT(measured("error of the velocity", e.velocity),
+                drift > 0.0 ? one.in_stream : one.at_rest);
       EXPECT_LT(measured("error of the pressure", e.pressure), drift > 0.0 ? 0.018 : 0.012);
-      EXPECT_GE(measured("fewest points in a cell", e.fewest), 1);
+      EXPECT_GE(measured("fewest points in a cell", e.fewest), apic && drift > 0.0 ? 0 : 1);
       EXPECT_LE(measured("most points in a cell", e.most), 8);
       EXPECT_LT(measured("divergence h/U", run.fix("w")->compute_vector(DIVERGENCE) / n), 1e-10);
       EXPECT_EQ(run.fix("w")->compute_vector(WET), n * n);
-      if (drift == 0.0)
-        at_rest = e.velocity;
-      else
-        EXPECT_LT(
-            measured("error of the velocity in a stream over that at rest", e.velocity / at_rest),
-            one.in_stream);
     }
   }
 }
@@ -204,7 +200,7 @@ SERIAL_TEST(Vortices, AnyNumberOfSteps)
         EXPECT_LT(measured(strprintf("%d cells, %d steps, stream %g: error of the velocity", n,
                                      times * n, drift),
                            errors_of(run, n, 0.01, drift).velocity),
-                  n == 16 ? 0.03 : 0.012);
+                  n == 16 ? 0.022 : 0.009);
       }
 }
 
@@ -913,7 +909,8 @@ SERIAL_TEST(Plates, StreamOverAPlate)
   }
 }
 
-// the velocity of a fall is that of the elapsed time, with steps of fix mpm/dt or of any length
+// velocity and place of a fall are those of the elapsed time, with steps of fix mpm/dt or of any
+// length
 SERIAL_TEST(Drop, FallsFreely)
 {
   for (const char *more : {"", "reflect 0.8"}) {
@@ -926,7 +923,25 @@ SERIAL_TEST(Drop, FallsFreely)
         "fix dt all mpm/dt 0.3 every 1 max 0.02\nrun 20\n");
     const double v = -9.81 * (run.time());
     for (int i = 0; i < run.n(); i++) EXPECT_NEAR(run.v()[i][1] / v, 1.0, 1e-12) << more;
+    EXPECT_NEAR(run.sums().x[1], 3.2 + 0.5 * run.time() * v, 1e-12) << more;
   }
+}
+
+// a column that collapses is nearly where it should be with long steps, too: 0.33 % of its fall; if
+// its first forces acted for a whole step, it would be 3.3 %
+SERIAL_TEST(Column, FallsInAFewSteps)
+{
+  double height[2];
+  for (const int k : {0, 1}) {
+    const int nsteps = k ? 80 : 20;
+    Scene run(plane("si", "f f", "0 1.2 0 1", 1, 0.02) +
+              "region low block INF 0.4 INF 0.8 INF INF\ncreate_points 1 region low spacing 0.025\n"
+              "fix w all mpm/incompressible 0.05 1000\nfix g all gravity 9.81 vector 0 -1 0\n" +
+              strprintf("timestep %.17g\nrun %d\n", 0.2 / nsteps, nsteps));
+    height[k] = run.sums().x[1];
+  }
+  EXPECT_LT(measured("difference over the fall", (height[1] - height[0]) / (0.4 - height[1])),
+            0.005);
 }
 
 // pressure, forces on walls, and velocities do not depend on how long the step before was

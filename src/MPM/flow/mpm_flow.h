@@ -27,12 +27,12 @@ struct MPMFlowPoints;
  *  Points give momentum to the faces of a staggered lattice, forces and the pressure change the
  *  velocities of the faces, and points move with these velocities.
  *
- *  The velocities of the lattice are those of the middle of a step, so that places are of second
- *  order in time (leapfrog): forces act from the middle of the step before to that of this one, and
- *  in the first step for half of it. Velocities of points go on from there to the end of the step
- *  with half of their change. What they have thereby, *ahead*, is taken back at the start of the next
- *  step. In a flow with grains, whose velocities are those of the ends of steps, and with implicit
- *  viscosity, which is of first order, forces act for whole steps, and nothing goes on. */
+ *  The velocities of the lattice are those of the middle of a step (leapfrog): forces act from the
+ *  middle of the step before to that of this one, and in the first step for half of it. Velocities
+ *  of points go on from there to the end of the step with half of their change. What they have
+ *  thereby, *ahead*, is taken back at the start of the next step. In a flow with grains, whose
+ *  velocities are those of the ends of steps, and with implicit viscosity, which is of first
+ *  order, forces act for whole steps, and nothing goes on. */
 class MPMFlow : protected Pointers {
  public:
   MPMIncompressibleOptions
