@@ -53,6 +53,27 @@ std::string filled(double h, const char *inlet, const char *velocity,
       "\nfix g all gravity 9.81 vector 0 -1 0\n";
 }
 
+// An inflow that grows with time: all points have its velocity, and are where it has brought them
+SERIAL_TEST(Channel, FlowsFaster)
+{
+  Scene run(
+      plane("si", "f f", "0 2 0 0.4", 1, 0.02) +
+      "region inlet block 0 0.2 0 0.4 INF INF\nregion rest block 0.2 1.8 INF INF INF INF\n"
+      "create_points 1 region rest spacing 0.025\nregion drain block 1.8 INF INF INF INF INF\n"
+      "variable U equal 0.5*time\n"
+      "fix in all mpm/emit 1 region inlet velocity v_U 0 0 normal 1 0 0 spacing 0.025\n"
+      "fix out all mpm/absorb region drain\nfix w all mpm/incompressible 0.05 1000\n"
+      "timestep 0.02\nrun 0\n");
+  const double before = run.x()[0][0];
+  const tagint tag = run.lmp->atom->tag[0];
+  run.commands("run 7\n");
+  const double t = run.time();
+  for (const auto &s : run.gather()) {
+    EXPECT_NEAR(s.v[0], 0.5 * t, 1e-9);
+    if (s.tag == tag) EXPECT_NEAR(s.x[0] - before, 0.25 * t * t, 1e-9);
+  }
+}
+
 // A channel as wide as its inlet: all points have the velocity of the inflow, in all directions
 SERIAL_TEST(Channel, IsSteady)
 {

@@ -927,6 +927,38 @@ SERIAL_TEST(Drop, FallsFreely)
   }
 }
 
+// what has fallen goes on with its velocity without gravity, and with other gravity from now on; a
+// flow with implicit viscosity, whose velocities are those of the ends of steps, takes it over
+SERIAL_TEST(Drop, ForcesChangeBetweenRuns)
+{
+  constexpr double dt = 0.01, g = 9.81;
+  const std::string flow = "fix w all mpm/incompressible 0.05 1000 ";
+  for (const char *more : {"", "viscosity 1"}) {
+    Scene run(
+        plane("si", "f f", "0 1 0 4", 1, 0.02) +
+        "region drop block 0.3 0.6 3 3.4 INF INF\ncreate_points 1 region drop spacing 0.025\n" +
+        flow + more + "\nfix g all gravity 9.81 vector 0 -1 0\ntimestep 0.01\nrun 5\nunfix g\n");
+    double v = -5 * dt * g, y = 3.2 - 0.5 * std::pow(5 * dt, 2) * g;
+    const auto check = [&](double a, int nsteps, const char *what) {
+      y += nsteps * dt * (v + 0.5 * a * nsteps * dt);
+      v += a * nsteps * dt;
+      EXPECT_NEAR(run.sums().p[1] / run.sums().mass, v, 1e-12) << what;
+      EXPECT_NEAR(run.sums().x[1], y, 1e-12) << what;
+    };
+    run.commands("run 3\n");
+    check(0.0, 3, "without gravity");
+    run.commands("fix g all gravity 9.81 vector 0 1 0\nrun 2\n");
+    check(g, 2, "upwards");
+    run.commands("run 2\n");
+    check(g, 2, "the same");
+    if (!*more) continue;
+    const ScratchFile file("restart");
+    run.commands("write_restart " + file.name + "\nclear\nread_restart " + file.name + "\n" + flow +
+                 more + " implicit yes\nfix g all gravity 9.81 vector 0 1 0\nrun 2\n");
+    EXPECT_NEAR(run.sums().p[1] / run.sums().mass, v + 2 * dt * g, 1e-9);
+  }
+}
+
 // a column that collapses is nearly where it should be with long steps, too: 0.33 % of its fall; if
 // its first forces acted for a whole step, it would be 3.3 %
 SERIAL_TEST(Column, FallsInAFewSteps)

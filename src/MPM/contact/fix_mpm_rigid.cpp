@@ -477,6 +477,7 @@ void FixMPMRigid::go_on(double dt, double kick, double goes_on, const double *im
                         const double *struck)
 {
   dt_last = dt;
+  in_flow = 1.0;
   for (int i = 0; i < 6; i++) impulse[i] = dt / kick * impulse_of_flow[i] + struck[i];
   take_back();
   const MPMRigidMotion before = *this;

@@ -88,7 +88,9 @@ class FixMPMRigid :
              const double *struck);
   /** Gives the body an impulse and its moment [6]. */
   void strike(const double *J);
-  /** The velocities are those of the middle of a step. */
+  /** Has no flow moved the body so far? */
+  bool is_new() const { return in_flow == 0.0; }
+  /** The velocities are those of now. */
   void forget() { std::fill_n(ahead, 6, 0.0); }
 
  private:

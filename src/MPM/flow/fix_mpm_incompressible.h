@@ -66,6 +66,7 @@ class FixMPMIncompressible :
   void visit_batches(int group_bits, const BatchVisitor &) override;
   double density_of_groups(int mask) const override { return flow->liquids.density(mask); }
   void check_density(double fluid, const std::string &who) const override;
+  bool moves_as_in_the_middle() const override { return flow->moves_as_in_the_middle(); }
 
  private:
   MPMSetUp set_up;

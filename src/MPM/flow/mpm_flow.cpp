@@ -52,16 +52,16 @@ static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
 // takes more of their change
 static constexpr int FITS = 200;
 static constexpr double FITTED = 1.0e-12, FIT = 1.5;
-// relative difference of sums over all velocities that is no more than another order of them
-static constexpr double SAME_VELOCITIES = 1.0e-11;
+// relative difference of sums over all points that is no more than another order of them
+static constexpr double SAME = 1.0e-11;
 
 MPMFlow::MPMFlow(LAMMPS *lmp, const MPMIncompressibleOptions &chosen, int groupbit,
                  const std::string &id, const MPMRows &gradient, const MPMRows &ahead) :
     Pointers(lmp),
     options(chosen), liquids(lmp, options), parts(lmp, options, liquids, fields, groupbit),
     checks(lmp, options, liquids, parts, id), groupbit(groupbit), id(id),
-    who(fmt::format("Fix mpm/incompressible {}", id)), gradient(gradient),
-    ahead(ahead), momentum(lmp, options, liquids, parts, fields, results, who)
+    who(fmt::format("Fix mpm/incompressible {}", id)), gradient(gradient), ahead(ahead),
+    momentum(lmp, options, liquids, parts, fields, results, who)
 {
   results.regions.assign(3 * options.region_ids.size(), 0.0);
   choose_transfer();
@@ -107,8 +107,9 @@ void MPMFlow::start()
     checks.check_depths();
   }
   double size;
-  const double sum = sum_of_velocities(size);
-  is_new = !(std::fabs(sum - sum_before) <= SAME_VELOCITIES * size);
+  const double sum = sum_over_points(atom->v, size);
+  is_new = !(std::fabs(sum - sum_before) <= SAME * size);
+  first_of_run = true;
   if (is_new) {
     dt_before = 0.0;
     if (gradient) fit_gradients(points_now(0.0));
@@ -217,14 +218,16 @@ void MPMFlow::make_plan()
 
 void MPMFlow::begin_step()
 {
-  const bool whole = parts.grains || parts.stress;
-  const double dt = update->dt, kick = whole ? dt : 0.5 * (dt_before + dt),
+  const bool in_the_middle = moves_as_in_the_middle();
+  begins = !goes_on() || is_new;
+  if (begins && in_the_middle) dt_before = 0.0;
+  const double dt = update->dt, kick = in_the_middle ? 0.5 * (dt_before + dt) : dt,
                before = dt_before > 0.0 ? dt_before : kick;
   now = {dt,
          kick,
          before,
          1.0 / (1.0 + options.reflect),
-         whole ? 0.0 : 0.5 * dt / kick,
+         in_the_middle ? 0.5 * dt / kick : 0.0,
          std::fabs(kick - before) > DIFFERENT_DT * kick,
          false};
   dt_before = dt;
@@ -232,14 +235,28 @@ void MPMFlow::begin_step()
   take_back();
 }
 
+/** Does the flow of the step before go on? It does not if forces, or bodies, are others than at the
+ *  end of the last run: these must not act in place of those before from the middle of the last
+ *  step on. Collective. */
+bool MPMFlow::goes_on()
+{
+  if (!first_of_run) return true;
+  first_of_run = false;
+  double size;
+  const double sum = sum_over_points(atom->f, size);
+  const bool same = std::fabs(sum - force_before) <= SAME * size;
+  return was_in_the_middle == moves_as_in_the_middle() && same &&
+      !(parts.bodies && parts.bodies->any_new());
+}
+
 /** Velocities in the middle of the last step. New ones are those of now. */
 void MPMFlow::take_back()
 {
-  if (is_new && parts.bodies) parts.bodies->forget();
+  if (begins && parts.bodies) parts.bodies->forget();
   const int dim = parts.cells.lattice.dim;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!parts.cells.is_point(i)) continue;
-    for (int d = 0; d < dim && !is_new; d++) atom->v[i][d] -= ahead[i][d];
+    for (int d = 0; d < dim && !begins; d++) atom->v[i][d] -= ahead[i][d];
     std::fill_n(ahead[i], dim, 0.0);
   }
 }
@@ -248,7 +265,7 @@ void MPMFlow::find_flow()
 {
   const double kick = now.kick, before = now.dt_before;
   std::vector<double> impulse;
-  if (is_new && (now.goes_on > 0.0 || options.reflect > 0.0)) {
+  if (begins && moves_as_in_the_middle()) {
     momentum.strike();
     impulse = parts.pressure->psi;
     fields.initial = fields.predicted = fields.velocity;
@@ -300,9 +317,10 @@ void MPMFlow::points_to_faces()
   if (is_new) {
     fields.predicted = fields.start;
     parts.cells.reflect_velocities(fields.predicted.data());
-  }
+  } else if (begins)
+    fields.start = fields.predicted;
   now.keeps = options.flip > 0.0 || options.transfer == MPMIncompressibleOptions::AUTO;
-  if (now.keeps || options.reflect > 0.0 || now.differs || is_new)
+  if (now.keeps || options.reflect > 0.0 || now.differs || begins)
     fields.initial = fields.predicted;
 }
 
@@ -317,12 +335,12 @@ void MPMFlow::faces_to_points()
   double shift_energy[2] = {0.0, 0.0};
   const MPMFlowUpdate update = {options.flip,
                                 !now.keeps   ? nullptr
-                                    : is_new ? fields.start.data()
+                                    : begins ? fields.start.data()
                                              : fields.initial.data(),
                                 options.reflect,
                                 options.reflect > 0.0 ? fields.change.data() : nullptr,
                                 now.goes_on,
-                                is_new && now.goes_on > 0.0 ? fields.initial.data() : nullptr,
+                                begins && now.goes_on > 0.0 ? fields.initial.data() : nullptr,
                                 options.spread > 0.0 ? fields.shift.data() : nullptr,
                                 parts.regions.get(),
                                 parts.inflow.get(),
@@ -336,7 +354,8 @@ void MPMFlow::faces_to_points()
   parts.cells.valid = get_from_cells(parts.cells, points_now(now.dt), fields.velocity.data(),
                                      update, fields.pressures.data(), MPMPoints::get(atom)->tau);
   spreading_energy += force->mvv2e * shift_energy[0] - shift_energy[1];
-  is_new = false;
+  is_new = begins = false;
+  was_in_the_middle = moves_as_in_the_middle();
 }
 
 /** Sums over all ranks: number of ranks whose cells are not those of their points,
@@ -458,17 +477,17 @@ void MPMFlow::find_start()
   find_free_velocities(points);
 }
 
-/** A sum over the momenta of the points of all ranks, with a factor of each point, so that it
- *  differs if any of them differs. size: the sum of their magnitudes. */
-double MPMFlow::sum_of_velocities(double &size) const
+/** A sum over values [n][3] of the points of all ranks, with the mass and another factor of each
+ *  point, so that it differs if any of them differs. size: the sum of their magnitudes. */
+double MPMFlow::sum_over_points(double **values, double &size) const
 {
   double mine[2] = {0.0, 0.0}, all[2];
   for (int i = 0; i < atom->nlocal; i++)
     if (parts.cells.is_point(i))
       for (int d = 0; d < parts.cells.lattice.dim; d++) {
-        const double momentum = atom->rmass[i] * atom->v[i][d];
-        mine[0] += std::cos((double) atom->tag[i] + d) * momentum;
-        mine[1] += std::fabs(momentum);
+        const double value = atom->rmass[i] * values[i][d];
+        mine[0] += std::cos((double) atom->tag[i] + d) * value;
+        mine[1] += std::fabs(value);
       }
   MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
   size = all[1];
@@ -478,7 +497,9 @@ double MPMFlow::sum_of_velocities(double &size) const
 void MPMFlow::end_run()
 {
   double size;
-  if (!is_new) sum_before = sum_of_velocities(size);
+  if (is_new) return;
+  sum_before = sum_over_points(atom->v, size);
+  force_before = sum_over_points(atom->f, size);
 }
 
 /* ----------------------------------------------------------------------
@@ -639,9 +660,17 @@ std::vector<double> MPMFlow::restart_data() const
   double last[4];
   sum_last_step(true, last);
   double size;
-  const double sum = is_new ? sum_before : sum_of_velocities(size);
-  std::vector<double> state = {dt_before,        limit, last[1], last[2], last[3],
-                               results.halvings, 0.0,   0.0,     sum};
+  std::vector<double> state = {dt_before,
+                               limit,
+                               last[1],
+                               last[2],
+                               last[3],
+                               results.halvings,
+                               0.0,
+                               0.0,
+                               is_new ? sum_before : sum_over_points(atom->v, size),
+                               is_new ? force_before : sum_over_points(atom->f, size),
+                               (double) was_in_the_middle};
   if (parts.regions) {
     const auto motion = parts.regions->motion();
     state[6] = (double) motion.size();
@@ -658,13 +687,15 @@ std::vector<double> MPMFlow::restart_data() const
 void MPMFlow::restart(const double *from)
 {
   const double *const state = from;
-  from += 9;
+  from += 11;
   dt_before = state[0];
   limit_before = state[1];
   for (int k = 0; k < 2; k++) unseen[k] = comm->me ? 0.0 : state[2 + k];
   spreading_energy = comm->me ? 0.0 : state[4];
   results.halvings = state[5];
   sum_before = state[8];
+  force_before = state[9];
+  was_in_the_middle = state[10] > 0.0;
   const auto nmotion = (std::size_t) state[6], ngas = (std::size_t) state[7];
   if (parts.regions) parts.regions->set_motion({from, from + nmotion});
   if (parts.gas && !parts.gas->restart(from + nmotion, ngas))

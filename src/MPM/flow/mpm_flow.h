@@ -59,6 +59,8 @@ class MPMFlow : protected Pointers {
   void step() { stages.run(); }
   /** End of a run. Collective. */
   void end_run();
+  /** Are the velocities of the lattice those of the middle of a step? */
+  bool moves_as_in_the_middle() const { return !parts.grains && !parts.stress; }
   /** The stages of a step. */
   const MPMStageList &plan() const { return stages; }
 
@@ -95,9 +97,13 @@ class MPMFlow : protected Pointers {
     bool differs, keeps;
   } now = {};
   double dt_before = 0.0;    // duration of the last step; 0: none so far, or velocities are new
-  // sum_of_velocities() after the last step; infinite: none so far
-  double sum_before = std::numeric_limits<double>::infinity();
-  bool is_new = true;    // do points have other velocities than after the last step?
+  // sum_over_points() of velocities and forces after the last step; infinite: none so far
+  double sum_before = std::numeric_limits<double>::infinity(), force_before = sum_before;
+  // do points have other velocities than after the last step; do velocities count as those of now,
+  // and not as those of a flow that goes on?
+  bool is_new = true, begins = true;
+  bool first_of_run = true;
+  bool was_in_the_middle = true;    // moves_as_in_the_middle() in the last step
   // last stable_dt() with forces; after a restart, of all ranks; 0: none
   mutable double limit_before = 0.0;
   bool forces_known = false;        // false at the start of a run, when forces are cleared
@@ -127,7 +133,8 @@ class MPMFlow : protected Pointers {
   void find_free_velocities(const MPMFlowPoints &);
   void fit_gradients(const MPMFlowPoints &);
   void find_start();
-  double sum_of_velocities(double &size) const;
+  double sum_over_points(double **values, double &size) const;
+  bool goes_on();
   void check_speed();
 };
 

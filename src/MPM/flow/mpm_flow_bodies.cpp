@@ -15,6 +15,7 @@
 #include "comm.h"
 #include "math_extra.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -135,6 +136,13 @@ void MPMFlowBodies::move(double dt, double kick, double goes_on)
     body.struck = {};
     regions.set_velocity(body.wall, body.u);
   }
+}
+
+bool MPMFlowBodies::any_new() const
+{
+  return std::any_of(bodies.begin(), bodies.end(), [](const Body &body) {
+    return body.fix->is_new();
+  });
 }
 
 void MPMFlowBodies::forget()

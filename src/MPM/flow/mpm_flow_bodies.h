@@ -63,6 +63,8 @@ class MPMFlowBodies {
    *  forces have acted for a duration kick. goes_on: share of the change of velocities that they get
    *  once more at the end. */
   void move(double dt, double kick, double goes_on);
+  /** Has any body not been moved by a flow in the step before? */
+  bool any_new() const;
   /** Velocities of bodies are those of now, and not of the end of the last step. */
   void forget();
 

@@ -206,14 +206,15 @@ void MPMFlowInflow::hold(std::vector<double> &velocity, std::vector<double> *mob
   cells.reflect_velocities(velocity.data());
 }
 
-bool MPMFlowInflow::carry(double *x, double *v, double dt) const
+bool MPMFlowInflow::carry(double *x, double *v, double *ahead, double dt) const
 {
   for (const auto &one : inlets) {
     if (!one.fix->shape().holds(x, 0.0)) continue;
     for (int d = 0; d < 3; d++) {
-      v[d] = one.velocity[d];
-      x[d] += dt * v[d];
+      v[d] = one.fix->velocity_at_end()[d];
+      x[d] += dt * one.velocity[d];
     }
+    for (int d = 0; d < cells.lattice.dim; d++) ahead[d] = v[d] - one.velocity[d];
     return true;
   }
   return false;

@@ -492,9 +492,8 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         add_viscous<dim>(update.viscosity, thick, cells.lattice.h, G, stress[i]);
       }
 
-      if (update.inflow && update.inflow->carry(x, v, points.dt)) {
+      if (update.inflow && update.inflow->carry(x, v, points.ahead[i], points.dt)) {
         if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);
-        std::fill_n(points.ahead[i], dim, 0.0);
         places.keep_inside(x);
         places.find_base(x, base);
         all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);

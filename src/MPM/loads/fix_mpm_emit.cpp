@@ -344,13 +344,17 @@ void FixMPMEmit::evaluate_velocities()
       drift[d] = evaluate(lmp, move[d]);
     }
   });
+  std::copy_n(flow, 3, at_end);
 }
 
 void FixMPMEmit::update_motion()
 {
   if (motion_step == update->ntimestep) return;
   motion_step = update->ntimestep;
+  const double before[3] = {at_end[0], at_end[1], at_end[2]};
   evaluate_velocities();
+  if (fluid && fluid->moves_as_in_the_middle())
+    for (int d = 0; d < 3; d++) flow[d] = 0.5 * (before[d] + at_end[d]);
   const double *const n = inlet->normal;
   speed = dot(flow, n);
   double across = 0.0;

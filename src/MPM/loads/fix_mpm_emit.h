@@ -100,6 +100,8 @@ class FixMPMEmit :
   const MPMInlet &shape() const { return *inlet; }    ///< valid from setup_pre_exchange() on
   /** Velocity v[3] of the material relative to the inlet in this step. Collective. */
   void velocity_now(double *v);
+  /** The same at the end of this step, after velocity_now(). */
+  const double *velocity_at_end() const { return at_end; }
 
  private:
   int type;
@@ -127,8 +129,9 @@ class FixMPMEmit :
   static constexpr int NREAL = 15 + MPMTraffic::NREAL;
 
   double flow[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};    // of material, of inlet
-  double speed = 0.0;                                    // along the flow, relative to the inlet
-  bigint motion_step = -1;                               // step for which these are known
+  double at_end[3] = {0.0, 0.0, 0.0};    // of material; flow may be that of the middle of the step
+  double speed = 0.0;                    // along the flow, relative to the inlet
+  bigint motion_step = -1;               // step for which these are known
   double impulse[3] = {0.0, 0.0, 0.0}, dt_last = 0.0;    // on the material in the last step
   std::vector<int64_t> nodes;                            // nodes of the inlet, which are held
 
