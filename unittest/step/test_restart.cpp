@@ -288,6 +288,27 @@ SERIAL_TEST(ResetTimestep, ChangesNothing)
   }
 }
 
+// what depends on time goes on after a file that was written during a run, too, whose time LAMMPS
+// alone would take for that of the start of the run
+SERIAL_TEST(RestartFile, KnowsItsTime)
+{
+  const std::string load = "neighbor 0.02 bin\nvariable g equal 9.81*sin(30*time)\n"
+                           "fix g all gravity v_g vector 0 -1 0\n";
+  for (const std::string grid :
+       {"fix grid all mpm 0.05\nfix m all mpm/material density 1000 neohookean 1e5 0.3\n",
+        "fix w all mpm/incompressible 0.05 1000\n"}) {
+    const ScratchFile file("time");
+    Scene whole(plane("si", "f f", "0 1 0 1", 1, 0.02) +
+                "region b block 0.2 0.8 0.2 0.6 INF INF\ncreate_points 1 region b spacing 0.025\n" +
+                grid + load + "timestep 1e-3\nrestart 20 " + file.name + " " + file.name +
+                "2\nrun 60\n");
+    Scene again("read_restart " + file.name + "2\n" + grid + load + "run 20\n");
+    EXPECT_NEAR(again.time(), 0.06, 1e-12);
+    EXPECT_LT(difference(whole.gather(), again.gather()), 1e-9);
+    std::remove((file.name + "2").c_str());
+  }
+}
+
 // bytes that have changed on a disk are seen, in each state of a fix, and in what belongs to a point
 SERIAL_TEST(RestartFile, DamageIsSeen)
 {

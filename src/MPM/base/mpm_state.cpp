@@ -12,6 +12,7 @@
 #include "error.h"
 #include "lammps.h"
 #include "memory.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -215,5 +216,8 @@ char *LAMMPS_NS::read_state(LAMMPS *lmp, const std::string &id, char *buf)
                     "The state of fix {} in the restart file is not what was written: the file was "
                     "damaged, or is of another version of this package; take another file",
                     id);
+  // a file that is written during a run has the time of an earlier step with the number of that
+  // step, which LAMMPS sets to the present one when a run begins: the time between would be lost
+  lmp->update->update_time();
   return state;
 }
