@@ -242,8 +242,8 @@ SERIAL_TEST(Plan, MovesPointsAsTheFixDoes)
       two(water() + "fix w all mpm/incompressible 0.1 1000 transfer pic\n");
   const MPMRows none;
   std::vector<double> beyond_middle(2 * one.lmp->atom->nmax, 0.0);
-  const MPMRows ahead = {beyond_middle.data(), 2};
-  MPMFlow flow(one.lmp, options(), 1, "w", none, ahead);
+  const MPMRows half_kick = {beyond_middle.data(), 2};
+  MPMFlow flow(one.lmp, options(), 1, "w", none, half_kick);
   start(flow);
   for (int step = 0; step < STEPS; step++) flow.step();
   two.commands(strprintf("run %d\n", STEPS));

@@ -447,7 +447,7 @@ void FixMPMRigid::place_in_region(const double *at, double *place) const
 void FixMPMRigid::predict(double duration, double *u, double *inverse)
 {
   const MPMRigidMotion before = *this;
-  take_back();
+  undo_half_kick();
   load_impulse(duration);
   hold();
   spin();
@@ -458,13 +458,13 @@ void FixMPMRigid::predict(double duration, double *u, double *inverse)
 }
 
 /** Velocities of the middle of the last step. */
-void FixMPMRigid::take_back()
+void FixMPMRigid::undo_half_kick()
 {
   for (int d = 0; d < 3; d++) {
-    v[d] -= ahead[d];
-    L[d] -= ahead[3 + d];
+    v[d] -= half_kick[d];
+    L[d] -= half_kick[3 + d];
   }
-  std::fill_n(ahead, 6, 0.0);
+  std::fill_n(half_kick, 6, 0.0);
 }
 
 void FixMPMRigid::strike(const double *J)
@@ -473,23 +473,23 @@ void FixMPMRigid::strike(const double *J)
   spin();
 }
 
-void FixMPMRigid::go_on(double dt, double kick, double goes_on, const double *impulse_of_flow,
-                        const double *struck)
+void FixMPMRigid::go_on(double dt, double kick, double half_kick_share,
+                        const double *impulse_of_flow, const double *struck)
 {
   dt_last = dt;
   in_flow = 1.0;
   for (int i = 0; i < 6; i++) impulse[i] = dt / kick * impulse_of_flow[i] + struck[i];
-  take_back();
+  undo_half_kick();
   const MPMRigidMotion before = *this;
   load_impulse(kick);
   hold();
   push(impulse_of_flow);
   move(dt);
   for (int d = 0; d < 3; d++) {
-    ahead[d] = goes_on * (v[d] - before.v[d]);
-    ahead[3 + d] = goes_on * (L[d] - before.L[d]);
-    v[d] += ahead[d];
-    L[d] += ahead[3 + d];
+    half_kick[d] = half_kick_share * (v[d] - before.v[d]);
+    half_kick[3 + d] = half_kick_share * (L[d] - before.L[d]);
+    v[d] += half_kick[d];
+    L[d] += half_kick[3 + d];
   }
   spin();
   check_motion(dt);

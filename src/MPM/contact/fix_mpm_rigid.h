@@ -81,17 +81,17 @@ class FixMPMRigid :
    *  their change by an impulse and its moment about the center. Does not change the body. */
   void predict(double duration, double *u, double *inverse);
   /** Moves the body by a step of duration dt, with this impulse and moment [6] of the flow and the
-   *  loads of a duration kick that ends in the middle of the step. goes_on: share of the change of
-   *  velocities that belongs to the rest of the step. struck: [6] what strike() gave the body in this
-   *  step. */
-  void go_on(double dt, double kick, double goes_on, const double *impulse_of_flow,
+   *  loads of a duration kick that ends in the middle of the step. half_kick_share: share of the
+   *  change of velocities that belongs to the rest of the step. struck: [6] what strike() gave the
+   *  body in this step. */
+  void go_on(double dt, double kick, double half_kick_share, const double *impulse_of_flow,
              const double *struck);
   /** Gives the body an impulse and its moment [6]. */
   void strike(const double *J);
   /** Has no flow moved the body so far? */
   bool is_new() const { return in_flow == 0.0; }
   /** The velocities are those of now. */
-  void forget() { std::fill_n(ahead, 6, 0.0); }
+  void forget() { std::fill_n(half_kick, 6, 0.0); }
 
  private:
   double first[3];    // center of the body in the region
@@ -100,7 +100,7 @@ class FixMPMRigid :
 
   void find_shape();
   void load_impulse(double dt);
-  void take_back();
+  void undo_half_kick();
   double speed() const;
   double spacing_of_flow() const;
   void check_motion(double dt) const;

@@ -19,9 +19,9 @@ struct MPMRigidMotion {
   double impulse[6], dt_last;    ///< of the material on the body in the last step
   double collision[6];           ///< impulse and moment of walls and other bodies in that step
   double collision_work;         ///< of these since the start [mass velocity^2]
-  /** Of a body in a flow: what the velocity and the angular momentum have gained since the middle of
-   *  the last step, by the change in that step; 1: a flow has moved it, else 0. */
-  double ahead[6], in_flow;
+  /** Of a body in a flow: what the velocity and the angular momentum have gained since the middle
+   *  of the last step, by the change in that step; 1: a flow has moved it, else 0. */
+  double half_kick[6], in_flow;
 };
 
 /** A rigid body, components of whose motion may be held. */

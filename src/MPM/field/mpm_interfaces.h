@@ -83,7 +83,7 @@ class MPMFluid {
   virtual void check_density(double of_fluid, const std::string &who) const = 0;
   /** Are the velocities with which it moves those of the middle of a step, and not those of its
    *  end? */
-  virtual bool moves_as_in_the_middle() const = 0;
+  virtual bool is_leapfrog() const = 0;
 
  protected:
   ~MPMFluid() = default;    // owned and deleted as a Fix

@@ -54,8 +54,8 @@ FixMPMIncompressible::FixMPMIncompressible(LAMMPS *lmp, int narg, char **arg) :
   MPMIncompressibleOptions options;
   auto declared = options.declare(dim);
   read_options(lmp, declared, narg, arg, 3);
-  flow = std::make_unique<MPMFlow>(lmp, options, groupbit, id, gradient, ahead);
-  state.declare(ahead, "mpm/incompressible:ahead", dim);
+  flow = std::make_unique<MPMFlow>(lmp, options, groupbit, id, gradient, half_kick);
+  state.declare(half_kick, "mpm/incompressible:half_kick", dim);
   if (flow->has_gradients())
     state.declare(gradient, "mpm/incompressible:gradient", flow_slopes(dim));
 

@@ -66,13 +66,13 @@ class FixMPMIncompressible :
   void visit_batches(int group_bits, const BatchVisitor &) override;
   double density_of_groups(int mask) const override { return flow->liquids.density(mask); }
   void check_density(double fluid, const std::string &who) const override;
-  bool moves_as_in_the_middle() const override { return flow->moves_as_in_the_middle(); }
+  bool is_leapfrog() const override { return flow->is_leapfrog(); }
 
  private:
   MPMSetUp set_up;
   std::unique_ptr<MPMFlow> flow;
   MPMRows gradient;       // [n][flow_slopes(dim)] of velocities of points, with apic
-  MPMRows ahead;          // [n][dim] what velocities have beyond the middle of the last step
+  MPMRows half_kick;      // [n][dim] what velocities have beyond the middle of the last step
   double travel = 0.0;    // largest distance that points have moved since neighbor lists were made
 
   double gas_value(int k) const;

@@ -56,11 +56,11 @@ static constexpr double FITTED = 1.0e-12, FIT = 1.5;
 static constexpr double SAME = 1.0e-11;
 
 MPMFlow::MPMFlow(LAMMPS *lmp, const MPMIncompressibleOptions &chosen, int groupbit,
-                 const std::string &id, const MPMRows &gradient, const MPMRows &ahead) :
+                 const std::string &id, const MPMRows &gradient, const MPMRows &half_kick) :
     Pointers(lmp),
     options(chosen), liquids(lmp, options), parts(lmp, options, liquids, fields, groupbit),
     checks(lmp, options, liquids, parts, id), groupbit(groupbit), id(id),
-    who(fmt::format("Fix mpm/incompressible {}", id)), gradient(gradient), ahead(ahead),
+    who(fmt::format("Fix mpm/incompressible {}", id)), gradient(gradient), half_kick(half_kick),
     momentum(lmp, options, liquids, parts, fields, results, who)
 {
   results.regions.assign(3 * options.region_ids.size(), 0.0);
@@ -192,7 +192,7 @@ void MPMFlow::make_plan()
     });
   if (parts.bodies)
     stages.add("bodies", {"pressures"}, {"bodies"}, [this] {
-      parts.bodies->move(now.dt, now.kick, now.goes_on);
+      parts.bodies->move(now.dt, now.kick, now.half_kick_share);
     });
   if (parts.solids)
     stages.add("strain of solids", {"velocity"}, {"points"}, [this] {
@@ -218,46 +218,45 @@ void MPMFlow::make_plan()
 
 void MPMFlow::begin_step()
 {
-  const bool in_the_middle = moves_as_in_the_middle();
-  begins = !goes_on() || is_new;
-  if (begins && in_the_middle) dt_before = 0.0;
-  const double dt = update->dt, kick = in_the_middle ? 0.5 * (dt_before + dt) : dt,
+  const bool leapfrog = is_leapfrog();
+  begins = !continues() || is_new;
+  if (begins && leapfrog) dt_before = 0.0;
+  const double dt = update->dt, kick = leapfrog ? 0.5 * (dt_before + dt) : dt,
                before = dt_before > 0.0 ? dt_before : kick;
   now = {dt,
          kick,
          before,
          1.0 / (1.0 + options.reflect),
-         in_the_middle ? 0.5 * dt / kick : 0.0,
+         leapfrog ? 0.5 * dt / kick : 0.0,
          std::fabs(kick - before) > DIFFERENT_DT * kick,
          false};
   dt_before = dt;
   results.iterations = 0.0;
-  take_back();
+  undo_half_kick();
 }
 
 /** Does the flow of the step before go on? It does not if forces, or bodies, are others than at the
  *  end of the last run: these must not act in place of those before from the middle of the last
  *  step on. Collective. */
-bool MPMFlow::goes_on()
+bool MPMFlow::continues()
 {
   if (!first_of_run) return true;
   first_of_run = false;
   double size;
   const double sum = sum_over_points(atom->f, size);
   const bool same = std::fabs(sum - force_before) <= SAME * size;
-  return was_in_the_middle == moves_as_in_the_middle() && same &&
-      !(parts.bodies && parts.bodies->any_new());
+  return was_leapfrog == is_leapfrog() && same && !(parts.bodies && parts.bodies->any_new());
 }
 
 /** Velocities in the middle of the last step. New ones are those of now. */
-void MPMFlow::take_back()
+void MPMFlow::undo_half_kick()
 {
   if (begins && parts.bodies) parts.bodies->forget();
   const int dim = parts.cells.lattice.dim;
   for (int i = 0; i < atom->nlocal; i++) {
     if (!parts.cells.is_point(i)) continue;
-    for (int d = 0; d < dim && !begins; d++) atom->v[i][d] -= ahead[i][d];
-    std::fill_n(ahead[i], dim, 0.0);
+    for (int d = 0; d < dim && !begins; d++) atom->v[i][d] -= half_kick[i][d];
+    std::fill_n(half_kick[i], dim, 0.0);
   }
 }
 
@@ -265,7 +264,7 @@ void MPMFlow::find_flow()
 {
   const double kick = now.kick, before = now.dt_before;
   std::vector<double> impulse;
-  if (begins && moves_as_in_the_middle()) {
+  if (begins && is_leapfrog()) {
     momentum.strike();
     impulse = parts.pressure->psi;
     fields.initial = fields.predicted = fields.velocity;
@@ -333,29 +332,29 @@ void MPMFlow::find_wet_cells()
 void MPMFlow::faces_to_points()
 {
   double shift_energy[2] = {0.0, 0.0};
-  const MPMFlowUpdate update = {options.flip,
-                                !now.keeps   ? nullptr
-                                    : begins ? fields.start.data()
-                                             : fields.initial.data(),
-                                options.reflect,
-                                options.reflect > 0.0 ? fields.change.data() : nullptr,
-                                now.goes_on,
-                                begins && now.goes_on > 0.0 ? fields.initial.data() : nullptr,
-                                options.spread > 0.0 ? fields.shift.data() : nullptr,
-                                parts.regions.get(),
-                                parts.inflow.get(),
-                                parts.solids.get(),
-                                options.transfer == MPMIncompressibleOptions::AUTO ? unseen
-                                                                                   : nullptr,
-                                shift_energy,
-                                options.sharp ? fields.paths.data() : nullptr,
-                                liquids.largest_viscosity,
-                                parts.viscosities.get()};
+  const MPMFlowUpdate update = {
+      options.flip,
+      !now.keeps   ? nullptr
+          : begins ? fields.start.data()
+                   : fields.initial.data(),
+      options.reflect,
+      options.reflect > 0.0 ? fields.change.data() : nullptr,
+      now.half_kick_share,
+      begins && now.half_kick_share > 0.0 ? fields.initial.data() : nullptr,
+      options.spread > 0.0 ? fields.shift.data() : nullptr,
+      parts.regions.get(),
+      parts.inflow.get(),
+      parts.solids.get(),
+      options.transfer == MPMIncompressibleOptions::AUTO ? unseen : nullptr,
+      shift_energy,
+      options.sharp ? fields.paths.data() : nullptr,
+      liquids.largest_viscosity,
+      parts.viscosities.get()};
   parts.cells.valid = get_from_cells(parts.cells, points_now(now.dt), fields.velocity.data(),
                                      update, fields.pressures.data(), MPMPoints::get(atom)->tau);
   spreading_energy += force->mvv2e * shift_energy[0] - shift_energy[1];
   is_new = begins = false;
-  was_in_the_middle = moves_as_in_the_middle();
+  was_leapfrog = is_leapfrog();
 }
 
 /** Sums over all ranks: number of ranks whose cells are not those of their points,
@@ -368,7 +367,7 @@ void MPMFlow::sum_last_step(bool valid, double *all) const
 
 MPMFlowPoints MPMFlow::points_now(double dt) const
 {
-  return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt, ahead};
+  return {atom->x, atom->v, atom->f, atom->rmass, atom->vfrac, gradient, dt, half_kick};
 }
 
 /** Velocities of faces from the momentum of points, and filled shares; both are complete. */
@@ -670,7 +669,7 @@ std::vector<double> MPMFlow::restart_data() const
                                0.0,
                                is_new ? sum_before : sum_over_points(atom->v, size),
                                is_new ? force_before : sum_over_points(atom->f, size),
-                               (double) was_in_the_middle};
+                               (double) was_leapfrog};
   if (parts.regions) {
     const auto motion = parts.regions->motion();
     state[6] = (double) motion.size();
@@ -695,7 +694,7 @@ void MPMFlow::restart(const double *from)
   results.halvings = state[5];
   sum_before = state[8];
   force_before = state[9];
-  was_in_the_middle = state[10] > 0.0;
+  was_leapfrog = state[10] > 0.0;
   const auto nmotion = (std::size_t) state[6], ngas = (std::size_t) state[7];
   if (parts.regions) parts.regions->set_motion({from, from + nmotion});
   if (parts.gas && !parts.gas->restart(from + nmotion, ngas))

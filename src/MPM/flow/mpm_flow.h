@@ -30,7 +30,7 @@ struct MPMFlowPoints;
  *  The velocities of the lattice are those of the middle of a step (leapfrog): forces act from the
  *  middle of the step before to that of this one, and in the first step for half of it. Velocities
  *  of points go on from there to the end of the step with half of their change. What they have
- *  thereby, *ahead*, is taken back at the start of the next step. In a flow with grains, whose
+ *  thereby, *half_kick*, is taken back at the start of the next step. In a flow with grains, whose
  *  velocities are those of the ends of steps, and with implicit viscosity, which is of first
  *  order, forces act for whole steps, and nothing goes on. */
 class MPMFlow : protected Pointers {
@@ -44,9 +44,9 @@ class MPMFlow : protected Pointers {
   MPMFlowChecks checks;
 
   /** groupbit: of the points. id: of the fix, for messages. gradient: [n][flow_slopes(dim)]
-   *  gradients of the velocities of points, or null; see has_gradients(). ahead: [n][dim]. */
+   *  gradients of the velocities of points, or null; see has_gradients(). half_kick: [n][dim]. */
   MPMFlow(class LAMMPS *, const MPMIncompressibleOptions &, int groupbit, const std::string &id,
-          const MPMRows &gradient, const MPMRows &ahead);
+          const MPMRows &gradient, const MPMRows &half_kick);
 
   /** Do points have gradients of their velocities? */
   bool has_gradients() const;
@@ -60,7 +60,7 @@ class MPMFlow : protected Pointers {
   /** End of a run. Collective. */
   void end_run();
   /** Are the velocities of the lattice those of the middle of a step? */
-  bool moves_as_in_the_middle() const { return !parts.grains && !parts.stress; }
+  bool is_leapfrog() const { return !parts.grains && !parts.stress; }
   /** The stages of a step. */
   const MPMStageList &plan() const { return stages; }
 
@@ -85,7 +85,7 @@ class MPMFlow : protected Pointers {
  private:
   const int groupbit;
   const std::string id, who;
-  const MPMRows &gradient, &ahead;
+  const MPMRows &gradient, &half_kick;
   MPMFlowMomentum momentum;
   MPMStageList stages;
 
@@ -93,7 +93,7 @@ class MPMFlow : protected Pointers {
   // that acts before points move; the share of the change by which velocities go on to the end of
   // the step; do the durations differ, and do points keep a part of their velocities?
   struct {
-    double dt, kick, dt_before, part, goes_on;
+    double dt, kick, dt_before, part, half_kick_share;
     bool differs, keeps;
   } now = {};
   double dt_before = 0.0;    // duration of the last step; 0: none so far, or velocities are new
@@ -103,7 +103,7 @@ class MPMFlow : protected Pointers {
   // and not as those of a flow that goes on?
   bool is_new = true, begins = true;
   bool first_of_run = true;
-  bool was_in_the_middle = true;    // moves_as_in_the_middle() in the last step
+  bool was_leapfrog = true;    // is_leapfrog() in the last step
   // last stable_dt() with forces; after a restart, of all ranks; 0: none
   mutable double limit_before = 0.0;
   bool forces_known = false;        // false at the start of a run, when forces are cleared
@@ -115,7 +115,7 @@ class MPMFlow : protected Pointers {
   void choose_transfer();
   void make_plan();
   void begin_step();
-  void take_back();
+  void undo_half_kick();
   void find_cells();
   void find_apertures();
   void points_to_faces();
@@ -134,7 +134,7 @@ class MPMFlow : protected Pointers {
   void fit_gradients(const MPMFlowPoints &);
   void find_start();
   double sum_over_points(double **values, double &size) const;
-  bool goes_on();
+  bool continues();
   void check_speed();
 };
 

@@ -129,10 +129,10 @@ void MPMFlowBodies::strike()
   }
 }
 
-void MPMFlowBodies::move(double dt, double kick, double goes_on)
+void MPMFlowBodies::move(double dt, double kick, double half_kick_share)
 {
   for (auto &body : bodies) {
-    body.fix->go_on(dt, kick, goes_on, body.impulse.data(), body.struck.data());
+    body.fix->go_on(dt, kick, half_kick_share, body.impulse.data(), body.struck.data());
     body.struck = {};
     regions.set_velocity(body.wall, body.u);
   }

@@ -60,9 +60,9 @@ class MPMFlowBodies {
   /** Gives bodies the impulse of a duration of zero, by which the flow starts. */
   void strike();
   /** Moves bodies, with their present velocities, to the end of a step of duration dt in which
-   *  forces have acted for a duration kick. goes_on: share of the change of velocities that they get
-   *  once more at the end. */
-  void move(double dt, double kick, double goes_on);
+   *  forces have acted for a duration kick. half_kick_share: share of the change of velocities that
+   *  they get once more at the end. */
+  void move(double dt, double kick, double half_kick_share);
   /** Has any body not been moved by a flow in the step before? */
   bool any_new() const;
   /** Velocities of bodies are those of now, and not of the end of the last step. */

@@ -206,7 +206,7 @@ void MPMFlowInflow::hold(std::vector<double> &velocity, std::vector<double> *mob
   cells.reflect_velocities(velocity.data());
 }
 
-bool MPMFlowInflow::carry(double *x, double *v, double *ahead, double dt) const
+bool MPMFlowInflow::carry(double *x, double *v, double *half_kick, double dt) const
 {
   for (const auto &one : inlets) {
     if (!one.fix->shape().holds(x, 0.0)) continue;
@@ -214,7 +214,7 @@ bool MPMFlowInflow::carry(double *x, double *v, double *ahead, double dt) const
       v[d] = one.fix->velocity_at_end()[d];
       x[d] += dt * one.velocity[d];
     }
-    for (int d = 0; d < cells.lattice.dim; d++) ahead[d] = v[d] - one.velocity[d];
+    for (int d = 0; d < cells.lattice.dim; d++) half_kick[d] = v[d] - one.velocity[d];
     return true;
   }
   return false;

@@ -44,9 +44,9 @@ class MPMFlowInflow : protected Pointers {
   void hold(std::vector<double> &velocity, std::vector<double> *mobility) const;
   /** [cell] volume that enters a cell per time, over its volume [1/time]; of all cells. */
   const std::vector<double> &sources() const { return source; }
-  /** Moves a point in an inlet by a step, and sets its velocity to that of the end of the step, which
-   *  is more by ahead[3] than that in the step; returns false if it is in none. */
-  bool carry(double *x, double *v, double *ahead, double dt) const;
+  /** Moves a point in an inlet by a step, and sets its velocity to that of the end of the step,
+   *  which is more by half_kick[3] than that in the step; returns false if it is in none. */
+  bool carry(double *x, double *v, double *half_kick, double dt) const;
 
   double memory_usage() const { return MPM_NS::bytes_of(held, source); }
 

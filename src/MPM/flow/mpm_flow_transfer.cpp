@@ -492,15 +492,15 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         add_viscous<dim>(update.viscosity, thick, cells.lattice.h, G, stress[i]);
       }
 
-      if (update.inflow && update.inflow->carry(x, v, points.ahead[i], points.dt)) {
+      if (update.inflow && update.inflow->carry(x, v, points.half_kick[i], points.dt)) {
         if (points.gradient) std::fill_n(points.gradient[i], NSLOPE, 0.0);
         places.keep_inside(x);
         places.find_base(x, base);
         all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
         continue;
       }
-      double *const ahead = points.ahead[i];
-      std::copy_n(update.struck ? at_point[at_struck] : v, dim, ahead);
+      double *const half_kick = points.half_kick[i];
+      std::copy_n(update.struck ? at_point[at_struck] : v, dim, half_kick);
       if (update.old)
         keep_unseen<dim>(update, points.mass[i], now, at_point[at_old], bend, v, squares);
       else
@@ -510,7 +510,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         for (int c = 0; c < dim; c++) v[c] += more[c];
         for (int e = 0; points.gradient && e < NSLOPE; e++) G[e] += G_more[e];
       }
-      for (int c = 0; c < dim; c++) ahead[c] = update.goes_on * (v[c] - ahead[c]);
+      for (int c = 0; c < dim; c++) half_kick[c] = update.half_kick_share * (v[c] - half_kick[c]);
       if (points.gradient)
         for (int e = 0; e < NSLOPE; e++)
           points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
@@ -545,7 +545,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.regions->keep_outside(x, v);
         places.keep_inside(x);
       }
-      for (int c = 0; c < dim; c++) v[c] += ahead[c];
+      for (int c = 0; c < dim; c++) v[c] += half_kick[c];
       places.find_base(x, base);
       all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
     }

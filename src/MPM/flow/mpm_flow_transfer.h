@@ -36,7 +36,7 @@ struct MPMFlowPoints {
   const double *mass, *volume;
   MPMRows gradient;    ///< [n][flow_slopes(dim)]; null: no gradients
   double dt;
-  MPMRows ahead = {};    ///< [n][dim] see MPMFlow; only for get_from_cells()
+  MPMRows half_kick = {};    ///< [n][dim] see MPMFlow; only for get_from_cells()
 };
 
 /** How points get their velocity from the cells. */
@@ -48,9 +48,9 @@ struct MPMFlowUpdate {
   const double *more;    ///< [cell][dim] the change that is added; null: no reflection
   /** Share of their change by which velocities of points go on from the middle of the step to its
    *  end. */
-  double goes_on;
-  /** [cell][dim] velocities before that change, where an impulse has changed those of points before;
-   *  null: those of points are. */
+  double half_kick_share;
+  /** [cell][dim] velocities before that change, where an impulse has changed those of points
+   *  before; null: those of points are. */
   const double *struck;
   /** [cell][dim] displacements of points in addition to the motion with their velocity; the
    *  velocities are changed to fit the new places in the field of velocities. null: none. */

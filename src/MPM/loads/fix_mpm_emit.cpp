@@ -353,7 +353,7 @@ void FixMPMEmit::update_motion()
   motion_step = update->ntimestep;
   const double before[3] = {at_end[0], at_end[1], at_end[2]};
   evaluate_velocities();
-  if (fluid && fluid->moves_as_in_the_middle())
+  if (fluid && fluid->is_leapfrog())
     for (int d = 0; d < 3; d++) flow[d] = 0.5 * (before[d] + at_end[d]);
   const double *const n = inlet->normal;
   speed = dot(flow, n);
