@@ -644,9 +644,10 @@ SERIAL_TEST(Wave, KeepsItsHeight)
   }
 }
 
-// water in a tank that is shaken sideways with the acceleration A cos(w t): its center moves as the
-// sum over modes of A (cos w t - cos W t)/(W^2 - w^2) 8 tanh(k H)/(m^3 pi^3 H/L), m odd, k = m pi/L,
-// W^2 = g k tanh(k H) (E.W. Graham, A.M. Rodriguez, J. Appl. Mech. 19 (1952) 381), whatever the step
+// water in a tank that is shaken sideways with the acceleration A cos(w t): its center moves as a
+// sum over modes m = 1, 3, ... of A (cos w t - cos W t)/(W^2 - w^2) 8 tanh(k H)/(m^3 pi^3 H/L),
+// with k = m pi/L and W^2 = g k tanh(k H) (E.W. Graham, A.M. Rodriguez, J. Appl. Mech. 19 (1952)
+// 381), whatever the step
 SERIAL_TEST(Wave, IsShaken)
 {
   constexpr double A = 0.02, w = 4.3, g = 9.81, H = 0.5;
