@@ -309,6 +309,43 @@ SERIAL_TEST(RestartFile, KnowsItsTime)
   }
 }
 
+// a state that is longer or shorter than the fix expects belongs to another version or to other
+// options, and is not read
+SERIAL_TEST(RestartFile, HasStatesOfTheRightSize)
+{
+  const ScratchFile file("sizes.bin");
+  const std::string input = head + "fix grid all mpm 1.0\n" + points + fixes("") + start,
+                    with = "\nneighbor 0.3 bin\n" + fixes("") + "run 0\n";
+  Scene whole(input + "run 20\nwrite_restart " + file.name + "\n");
+  const std::string bytes = file_text(file.name);
+  int nstates = 0;
+  for (std::size_t at = sizeof(int); at + 24 < bytes.size(); at++) {
+    double header[3];    // size, -size, checksum; before it, the number of all bytes
+    memcpy(header, bytes.data() + at, sizeof(header));
+    if (!(header[0] >= 8.0 && header[0] < 1.0e4) || header[1] != -header[0]) continue;
+    nstates++;
+    for (const int more : {8, -8}) {
+      std::string state = bytes.substr(at + 24, (std::size_t) header[0]);
+      state.resize(state.size() + more, '\0');
+      const double other[3] = {header[0] + more, -header[0] - more,
+                               checksum(state.data(), state.size())};
+      const int all = (int) (sizeof(other) + state.size());
+      const ScratchFile changed("changed.bin",
+                                bytes.substr(0, at - sizeof(int)) +
+                                    std::string((const char *) &all, sizeof(int)) +
+                                    std::string((const char *) other, sizeof(other)) + state +
+                                    bytes.substr(at + 24 + (std::size_t) header[0]));
+      Scene again;
+      EXPECT_THAT(again.error("read_restart " + changed.name + with),
+                  ::testing::AnyOf(::testing::HasSubstr("longer or shorter"),
+                                   ::testing::HasSubstr("have the history variables"),
+                                   ::testing::HasSubstr("has other options")))
+          << at << ' ' << more;
+    }
+  }
+  EXPECT_EQ(nstates, 5);    // mpm, two materials, boundary, dt
+}
+
 // bytes that have changed on a disk are seen, in each state of a fix, and in what belongs to a point
 SERIAL_TEST(RestartFile, DamageIsSeen)
 {

@@ -205,11 +205,11 @@ void LAMMPS_NS::write_state(FILE *fp, const void *state, std::size_t size)
   fwrite(state, 1, size, fp);
 }
 
-char *LAMMPS_NS::read_state(LAMMPS *lmp, const std::string &id, char *buf)
+std::string_view LAMMPS_NS::read_state(LAMMPS *lmp, const std::string &id, const char *buf)
 {
   StateHeader header;
   memcpy(&header, buf, sizeof(header));
-  char *const state = buf + sizeof(header);
+  const char *const state = buf + sizeof(header);
   if (!(header.size >= 0.0) || header.minus_size != -header.size ||
       header.checksum != checksum(state, (std::size_t) header.size))
     lmp->error->all(FLERR, Error::NOLASTLINE,
@@ -219,5 +219,22 @@ char *LAMMPS_NS::read_state(LAMMPS *lmp, const std::string &id, char *buf)
   // a file that is written during a run has the time of an earlier step with the number of that
   // step, which LAMMPS sets to the present one when a run begins: the time between would be lost
   lmp->update->update_time();
-  return state;
+  return {state, (std::size_t) header.size};
+}
+
+const char *LAMMPS_NS::read_state(LAMMPS *lmp, const std::string &id, const char *buf,
+                                  std::size_t size)
+{
+  const auto state = read_state(lmp, id, buf);
+  if (state.size() != size) refuse_state(lmp, id);
+  return state.data();
+}
+
+void LAMMPS_NS::refuse_state(LAMMPS *lmp, const std::string &id)
+{
+  lmp->error->all(FLERR, Error::NOLASTLINE,
+                  "The state of fix {} in the restart file is longer or shorter than that of this "
+                  "fix: the file was written with other options of it, or by another version of "
+                  "this package; give the fix the options of the file, or another ID to begin anew",
+                  id);
 }

@@ -15,6 +15,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace LAMMPS_NS {
 
@@ -112,9 +113,13 @@ void keep_totals(MPI_Comm, double *values, int n);
 double checksum(const void *bytes, std::size_t size);
 /** Writes the state of a fix to a restart file, with its checksum. For process 0. */
 void write_state(FILE *, const void *state, std::size_t size);
-/** The state in what Fix::restart() gets, as write_state() has written it; stops with an error if it
- *  has changed. id: of the fix. */
-char *read_state(class LAMMPS *, const std::string &id, char *buf);
+/** The state in what Fix::restart() gets, as write_state() has written it; stops with an error if
+ *  it has changed. id: of the fix. */
+std::string_view read_state(class LAMMPS *, const std::string &id, const char *buf);
+/** The same for a state of a known size; stops with an error if it has another one. */
+const char *read_state(class LAMMPS *, const std::string &id, const char *buf, std::size_t size);
+/** Stops with the error that a state has another size than the fix expects. */
+[[noreturn]] void refuse_state(class LAMMPS *, const std::string &id);
 /** Writes these sums as a state, followed by values that are the same on all processes. */
 void write_totals(FILE *, MPI_Comm, std::vector<double> &totals,
                   const std::vector<double> &same = {});

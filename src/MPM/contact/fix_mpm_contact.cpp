@@ -375,14 +375,17 @@ void FixMPMContact::write_restart(FILE *fp)
 /** Rank 0 goes on with the totals. */
 void FixMPMContact::restart(char *buf)
 {
-  const auto *const from = (const double *) read_state(lmp, id, buf);
+  const auto state = read_state(lmp, id, buf);
+  const auto *const from = (const double *) state.data();
   if ((int) from[0] != size_array_rows)
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/contact {} had another number of fields when the restart file was written: "
                "name as many, or give the fix another ID to begin anew",
                id);
+  const std::size_t size = (1 + size_array_rows) * sizeof(double);
+  if (state.size() <= size) refuse_state(lmp, id);
   const std::string ours = utils::join_words(names, " "),
-                    theirs = (const char *) (from + 1 + size_array_rows);
+                    theirs(state.data() + size, state.size() - size - 1);
   if (theirs != ours)
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/contact {} was between {} when the restart file was written, not {}: name "

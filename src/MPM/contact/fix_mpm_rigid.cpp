@@ -523,5 +523,6 @@ void FixMPMRigid::write_restart(FILE *fp)
 
 void FixMPMRigid::restart(char *buf)
 {
-  memcpy(static_cast<MPMRigidMotion *>(this), read_state(lmp, id, buf), sizeof(MPMRigidMotion));
+  memcpy(static_cast<MPMRigidMotion *>(this), read_state(lmp, id, buf, sizeof(MPMRigidMotion)),
+         sizeof(MPMRigidMotion));
 }

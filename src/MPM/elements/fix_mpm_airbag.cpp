@@ -247,7 +247,7 @@ void FixMPMAirbag::write_restart(FILE *fp)
 void FixMPMAirbag::restart(char *buf)
 {
   double list[7];
-  memcpy(list, read_state(lmp, id, buf), sizeof(list));
+  memcpy(list, read_state(lmp, id, buf, sizeof(list)), sizeof(list));
   filled = list[0] != 0.0;
   open = list[1] != 0.0;
   gas.mass = list[2];

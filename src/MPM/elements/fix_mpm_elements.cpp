@@ -480,7 +480,7 @@ void FixMPMElements::write_restart(FILE *fp)
 void FixMPMElements::restart(char *buf)
 {
   double list[3];
-  memcpy(list, read_state(lmp, id, buf), sizeof(list));
+  memcpy(list, read_state(lmp, id, buf, sizeof(list)), sizeof(list));
   internal->shortest = list[0];
   surface->work = list[1];
   spent = comm->me == 0 ? list[2] : 0.0;

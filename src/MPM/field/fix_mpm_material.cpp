@@ -258,14 +258,14 @@ void FixMPMMaterial::write_restart(FILE *fp)
 void FixMPMMaterial::restart(char *buf)
 {
   double list[3 + NWORK];
-  buf = read_state(lmp, id, buf);
-  memcpy(list, buf, 2 * sizeof(double));
+  const auto state = read_state(lmp, id, buf);
+  if (state.size() <= sizeof(list)) refuse_state(lmp, id);
+  memcpy(list, state.data(), sizeof(list));
   if (list[0] != RESTART_VERSION || list[1] != NWORK)
     error->all(
         FLERR, Error::NOLASTLINE,
         "Fix mpm/material {}: the restart file was written by another version of this package", id);
-  memcpy(list, buf, sizeof(list));
-  const std::string text = buf + sizeof(list);
+  const std::string text(state.data() + sizeof(list), state.size() - sizeof(list) - 1);
   if (text != names())
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/material {}: the points of the restart file have the history variables{}, "

@@ -54,7 +54,7 @@ class FixMPMIncompressible :
   double compute_vector(int) override;
   double memory_usage() override { return FixMPMState::memory_usage() + flow->memory_usage(); }
   void write_restart(FILE *) override;
-  void restart(char *buf) override { flow->restart((const double *) read_state(lmp, id, buf)); }
+  void restart(char *buf) override { flow->restart(id, buf); }
 
   /** Stable time step of this rank: the time in which a point passes one node spacing with its
    *  present velocity and acceleration, or a moving region or wall passes one, or the limit of

@@ -10,6 +10,7 @@
 
 #include "base/mpm_gravity.h"
 #include "base/mpm_points.h"
+#include "base/mpm_state.h"
 #include "flow/mpm_flow_transfer.h"
 
 #include "atom.h"
@@ -683,10 +684,13 @@ std::vector<double> MPMFlow::restart_data() const
   return state;
 }
 
-void MPMFlow::restart(const double *from)
+void MPMFlow::restart(const std::string &id, const char *buf)
 {
-  const double *const state = from;
-  from += 11;
+  constexpr std::size_t NFIXED = 11;
+  const auto all = read_state(lmp, id, buf);
+  if (all.size() < NFIXED * sizeof(double)) refuse_state(lmp, id);
+  const auto *const state = (const double *) all.data();
+  const double *const from = state + NFIXED;
   dt_before = state[0];
   limit_before = state[1];
   for (int k = 0; k < 2; k++) unseen[k] = comm->me ? 0.0 : state[2 + k];
@@ -696,6 +700,7 @@ void MPMFlow::restart(const double *from)
   force_before = state[9];
   was_leapfrog = state[10] > 0.0;
   const auto nmotion = (std::size_t) state[6], ngas = (std::size_t) state[7];
+  if (all.size() != (NFIXED + nmotion + ngas) * sizeof(double)) refuse_state(lmp, id);
   if (parts.regions) parts.regions->set_motion({from, from + nmotion});
   if (parts.gas && !parts.gas->restart(from + nmotion, ngas))
     error->all(FLERR, Error::NOLASTLINE,

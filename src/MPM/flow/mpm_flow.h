@@ -75,8 +75,8 @@ class MPMFlow : protected Pointers {
    *  share that points keep, halvings, a sum over velocities, motion of regions, and gas; complete
    *  on the first rank. Collective. */
   std::vector<double> restart_data() const;
-  /** Takes what restart_data() has given. */
-  void restart(const double *from);
+  /** Takes what restart_data() has given, as the fix with this ID gets it. */
+  void restart(const std::string &id, const char *buf);
   double memory_usage() const
   {
     return parts.memory_usage() + fields.memory_usage() + momentum.memory_usage();

@@ -767,6 +767,6 @@ void FixMPMHandshake::write_restart(FILE *fp)
 
 void FixMPMHandshake::restart(char *buf)
 {
-  const char *const state = read_state(lmp, id, buf);
+  const char *const state = read_state(lmp, id, buf, sizeof(energy));
   if (comm->me == 0) memcpy(&energy, state, sizeof(energy));
 }

@@ -43,7 +43,7 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
   double compute_scalar() override { return flow.heat_came(); }
   double compute_vector(int i) override { return flow.powers()[i]; }
   void write_restart(FILE *fp) override { flow.write_restart(fp); }
-  void restart(char *buf) override { flow.restart(read_state(lmp, id, buf)); }
+  void restart(char *buf) override { flow.restart(id, buf); }
   double memory_usage() override;
 
   void init_physics(MPMPlan &) override;

@@ -513,14 +513,19 @@ void MPMHeatFlow::write_restart(FILE *fp)
 
 /** The power is that of the last conduction until the next one; with other surfaces or contacts, it
  *  belongs to the old ones. */
-void MPMHeatFlow::restart(const char *buf)
+void MPMHeatFlow::restart(const std::string &id, const char *buf)
 {
+  constexpr std::size_t FIXED = sizeof(Totals) + sizeof(waited) + sizeof(double);
+  const auto state = read_state(lmp, id, buf);
+  if (state.size() < FIXED) refuse_state(lmp, id);
+  buf = state.data();
   if (comm->me == 0) memcpy(&totals, buf, sizeof(Totals));
   buf += sizeof(Totals);
   memcpy(&waited, buf, sizeof(waited));
   buf += sizeof(waited);
   double length;
   memcpy(&length, buf, sizeof(double));
+  if ((double) state.size() != FIXED + length * sizeof(double)) refuse_state(lmp, id);
   if (length == (double) power.size())
     memcpy(power.data(), buf + sizeof(double), power.size() * sizeof(double));
 }

@@ -120,7 +120,8 @@ class MPMHeatFlow : protected Pointers, private MPMDiffusion {
   /** Writes the mean numbers of iterations of a run. */
   void report() const;
   void write_restart(FILE *);
-  void restart(const char *);
+  /** Takes the state of the fix with this ID that Fix::restart() gets. */
+  void restart(const std::string &id, const char *buf);
   double memory_usage() const;
 
  private:

@@ -293,7 +293,8 @@ void FixMPMDeform::write_restart(FILE *fp)
 
 void FixMPMDeform::restart(char *buf)
 {
-  memcpy(cell.reals(), read_state(lmp, id, buf), MPMMeanDeformation::NREAL * sizeof(double));
+  constexpr std::size_t SIZE = MPMMeanDeformation::NREAL * sizeof(double);
+  memcpy(cell.reals(), read_state(lmp, id, buf, SIZE), SIZE);
   std::copy_n(cell.past.F, 9, cell.next);
 }
 

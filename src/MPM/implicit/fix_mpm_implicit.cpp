@@ -295,7 +295,8 @@ void FixMPMImplicit::write_restart(FILE *fp)
 
 void FixMPMImplicit::restart(char *buf)
 {
-  const auto *const list = (const double *) read_state(lmp, id, buf);
+  const auto *const list =
+      (const double *) read_state(lmp, id, buf, (NTOTAL + 2 + NLAST + 1) * sizeof(double));
   std::copy_n(list, (int) NTOTAL, total);
   if (comm->me == 0) std::copy_n(list + NTOTAL, 2, taken);
   std::copy_n(list + NTOTAL + 2, (int) NLAST, last);

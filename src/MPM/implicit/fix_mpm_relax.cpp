@@ -278,7 +278,7 @@ void FixMPMRelax::write_restart(FILE *fp)
 
 void FixMPMRelax::restart(char *buf)
 {
-  const auto *const list = (const double *) read_state(lmp, id, buf);
+  const auto *const list = (const double *) read_state(lmp, id, buf, 12 * sizeof(double));
   damping.kinetic = list[0];
   unbalanced = list[1];
   carried = list[2];

@@ -162,7 +162,7 @@ void FixMPMAbsorb::write_restart(FILE *fp)
 void FixMPMAbsorb::restart(char *buf)
 {
   double list[MPMTraffic::NREAL + 3];
-  memcpy(list, read_state(lmp, id, buf), sizeof(list));
+  memcpy(list, read_state(lmp, id, buf, sizeof(list)), sizeof(list));
   std::copy_n(list, MPMTraffic::NREAL, total.reals());
   rate = list[MPMTraffic::NREAL];
   waited = list[MPMTraffic::NREAL + 1];

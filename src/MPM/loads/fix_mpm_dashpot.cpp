@@ -765,7 +765,7 @@ void FixMPMDashpot::write_restart(FILE *fp)
 
 void FixMPMDashpot::restart(char *buf)
 {
-  const auto *const list = (const double *) read_state(lmp, id, buf);
+  const auto *const list = (const double *) read_state(lmp, id, buf, 5 * sizeof(double));
   work = comm->me == 0 ? list[0] : 0.0;
   defined = list[1] != 0.0;
   supports = list[2] != 0.0;

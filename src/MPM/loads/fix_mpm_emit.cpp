@@ -620,7 +620,7 @@ void FixMPMEmit::write_restart(FILE *fp)
 void FixMPMEmit::restart(char *buf)
 {
   double list[NREAL];
-  memcpy(list, read_state(lmp, id, buf), sizeof(list));
+  memcpy(list, read_state(lmp, id, buf, sizeof(list)), sizeof(list));
   past.travel = list[0];
   past.layers = list[1];
   past.started = list[2];

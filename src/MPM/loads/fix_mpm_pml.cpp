@@ -483,7 +483,7 @@ void FixMPMPML::write_restart(FILE *fp)
 
 void FixMPMPML::restart(char *buf)
 {
-  const auto *const list = (const double *) read_state(lmp, id, buf);
+  const auto *const list = (const double *) read_state(lmp, id, buf, 5 * sizeof(double));
   work_of_nodes = comm->me == 0 ? list[0] : 0.0;
   work_of_strain = comm->me == 0 ? list[1] : 0.0;
   defined = list[2] != 0.0;

@@ -702,7 +702,7 @@ void FixMPMTraction::write_restart(FILE *fp)
 
 void FixMPMTraction::restart(char *buf)
 {
-  const auto *const list = (const double *) read_state(lmp, id, buf);
+  const auto *const list = (const double *) read_state(lmp, id, buf, 4 * sizeof(double));
   if (comm->me == 0) std::copy_n(list, 2, work);
   defined = list[2] != 0.0;
   known = list[3];

@@ -242,8 +242,8 @@ void FixMPMMesh::check_points()
                id);
 }
 
-/** Points without any stress get the pressure of their equation of state, as those of fix mpm; those
- *  that have failed keep none. */
+/** Points without any stress get the pressure of their equation of state, as those of fix mpm;
+ *  those that have failed keep none. */
 void FixMPMMesh::give_initial_stress()
 {
   body->for_batches(body->order, [&](const int *list, int n, const FixMPMMaterial *material) {
@@ -485,13 +485,14 @@ void FixMPMMesh::write_restart(FILE *fp)
 
 void FixMPMMesh::restart(char *buf)
 {
-  const auto *list = (const double *) read_state(lmp, id, buf);
-  body->load_work = comm->me == 0 ? list[0] : 0.0;
-  if (list[1] != (double) body->positions.size())
+  const auto state = read_state(lmp, id, buf);
+  const auto *list = (const double *) state.data();
+  if (state.size() != (2 + 3 * body->positions.size()) * sizeof(double))
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/mesh {} has another frame or mesh than in the restart file, where {} nodes "
                "have moved, and not {}: give it those of the file",
-               id, list[1], body->positions.size());
+               id, state.size() / (3 * sizeof(double)), body->positions.size());
+  body->load_work = comm->me == 0 ? list[0] : 0.0;
   list += 2;
   for (auto &x : body->positions) {
     std::copy_n(list, 3, x.data());

@@ -391,8 +391,9 @@ void FixMPMMeshContact::write_restart(FILE *fp)
 
 void FixMPMMeshContact::restart(char *buf)
 {
-  const auto *const list = (const double *) read_state(lmp, id, buf);
-  if ((int) list[0] != size_array_rows)
+  const auto state = read_state(lmp, id, buf);
+  const auto *const list = (const double *) state.data();
+  if (state.size() != (1 + size_array_rows) * sizeof(double))
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/mesh/contact {} had another number of bodies when the restart file was "
                "written: name as many, or give the fix another ID to begin anew",

@@ -554,8 +554,9 @@ void FixMPMMeshHeat::write_restart(FILE *fp)
 
 void FixMPMMeshHeat::restart(char *buf)
 {
-  const auto *const list = (const double *) read_state(lmp, id, buf);
-  if ((std::size_t) list[0] != heat.size())
+  const auto state = read_state(lmp, id, buf);
+  const auto *const list = (const double *) state.data();
+  if (state.size() != (2 + heat.size()) * sizeof(double))
     error->all(FLERR, Error::NOPOINTER,
                "Fix mpm/mesh/heat {} had another number of conditions when the restart file was "
                "written: give as many, or give the fix another ID to begin anew",

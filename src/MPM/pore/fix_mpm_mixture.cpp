@@ -199,7 +199,7 @@ void FixMPMMixture::write_restart(FILE *fp)
 void FixMPMMixture::restart(char *buf)
 {
   double list[2];
-  memcpy(list, read_state(lmp, id, buf), sizeof(list));
+  memcpy(list, read_state(lmp, id, buf, sizeof(list)), sizeof(list));
   if (comm->me == 0) mixture.dissipated = list[0];
   mixture.meets = mixture.pores_known = list[1] != 0.0;
 }

@@ -38,10 +38,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, public MPMPorePressure
   double compute_scalar() override { return flow.volume_came(); }
   double compute_vector(int part) override { return flow.inflow(part); }
   void write_restart(FILE *fp) override { flow.write_restart(fp, has_state); }
-  void restart(char *buf) override
-  {
-    has_state = flow.restart((const double *) read_state(lmp, id, buf));
-  }
+  void restart(char *buf) override { has_state = flow.restart(id, buf); }
   double memory_usage() override { return FixMPMState::memory_usage() + flow.memory_usage(); }
 
   void init_physics(MPMPlan &) override;

@@ -397,8 +397,10 @@ void MPMPoreFlow::write_restart(FILE *fp, bool has_state)
                 conducted, exchanged, coarse ? 1.0 : 0.0, waited.steps, waited.time, thinned});
 }
 
-bool MPMPoreFlow::restart(const double *list)
+bool MPMPoreFlow::restart(const std::string &id, const char *buf)
 {
+  const auto *const list =
+      (const double *) read_state(lmp, id, buf, (came.size() + 9) * sizeof(double));
   const double *const same = list + came.size();
   if (comm->me == 0) std::copy_n(list, came.size(), came.begin());
   gradients_known = same[0] != 0.0;

@@ -154,8 +154,8 @@ class MPMPoreFlow : protected Pointers {
   double energy_came() const { return came[MPMPoreSurface::ENERGY]; }
 
   void write_restart(FILE *, bool has_state);
-  /** Takes what write_restart() has written; returns has_state. */
-  bool restart(const double *);
+  /** Takes what write_restart() has written, as the fix with this ID gets it; returns has_state. */
+  bool restart(const std::string &id, const char *buf);
   double memory_usage() const;
 
  private:

@@ -359,10 +359,16 @@ void FixMPM::write_restart(FILE *fp)
 void FixMPM::restart(char *buf)
 {
   Saved saved;
-  buf = read_state(lmp, id, buf);
-  memcpy(&saved, buf, sizeof(Saved));
-  const char *const start = buf + sizeof(Saved), *text = start + saved.nstart * sizeof(double);
-  continuation->expect(text + saved.ntext);
+  const auto state = read_state(lmp, id, buf);
+  if (state.size() < sizeof(Saved)) refuse_state(lmp, id);
+  memcpy(&saved, state.data(), sizeof(Saved));
+  const std::size_t size = sizeof(Saved) + saved.nstart * sizeof(double) + saved.ntext;
+  if (saved.nstart < 0 || saved.ntext < 0 || state.size() <= size) refuse_state(lmp, id);
+  const char *const start = state.data() + sizeof(Saved);
+  const char *const text = start + saved.nstart * sizeof(double);
+  const std::string lines = text + saved.ntext;
+  if (state.size() != size + lines.size() + 1) refuse_state(lmp, id);
+  continuation->expect(lines);
   std::string differences = continuation->other_lattice();
   if (differences.empty())
     differences = MPMFieldOptions(field->options)

@@ -413,7 +413,10 @@ void FixMPMDt::write_restart(FILE *fp)
 
 void FixMPMDt::restart(char *buf)
 {
-  const double *next = (const double *) read_state(lmp, id, buf);
+  constexpr std::size_t NSAVED = 7;
+  const auto options = saved_options();
+  const auto *next =
+      (const double *) read_state(lmp, id, buf, (NSAVED + options.size()) * sizeof(double));
   dt_left = *next++;
   limit_left = *next++;
   nchanges = (bigint) *next++;
@@ -422,5 +425,5 @@ void FixMPMDt::restart(char *buf)
   wanted_left = *next++;
   grains_left = *next++;
   continues = !(dt_max > 0.0 && wanted_left > dt_max);
-  for (const double option : saved_options()) continues = continues && option == *next++;
+  for (const double option : options) continues = continues && option == *next++;
 }

@@ -342,7 +342,7 @@ void FixMPMBoundary::write_restart(FILE *fp)
 
 void FixMPMBoundary::restart(char *buf)
 {
-  memcpy(&wall.state, read_state(lmp, id, buf), sizeof(MPMWallState));
+  memcpy(&wall.state, read_state(lmp, id, buf, sizeof(MPMWallState)), sizeof(MPMWallState));
   wall.state.work = comm->me == 0 ? wall.state.work / force->mvv2e : 0.0;
 }
 
