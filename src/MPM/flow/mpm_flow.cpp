@@ -47,6 +47,9 @@ static constexpr double FLIP_OF_BODIES = 0.98;
 // NOISY. Vortices, waves, and oscillating drops with 16 cells or more in a wave have 0.03 to 0.06;
 // remains of flow in a fluid at rest, and fluid that falls or splashes, have 0.2 to 3
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
+// nothing is kept where numerical errors add energy, either: shares of the largest kinetic energy,
+// above which this is so, and which are worth a warning
+static constexpr double GAIN = 0.03, MUCH_GAIN = 0.1;
 // passes that fit the gradients of velocities with which points begin, at most, and their change of
 // velocities of faces, relative to the largest one, that ends them: a pass leaves up to 0.58 of
 // what is missing, and 0.9 at walls, if it takes all of the gradients that it finds, and less if it
@@ -113,6 +116,8 @@ void MPMFlow::start()
   first_of_run = true;
   if (is_new) {
     dt_before = 0.0;
+    energy.begin();
+    only_forces = true;
     if (gradient) fit_gradients(points_now(0.0));
   }
   give_to_cells(parts.cells, points_now(0.0), fields.sums);
@@ -289,15 +294,12 @@ void MPMFlow::find_flow()
 
 void MPMFlow::find_cells()
 {
-  double last[4];
-  sum_last_step(parts.cells.valid && (!parts.grains || parts.cells.visitors_in_reach()), last);
+  const auto last =
+      sum_last_step(parts.cells.valid && (!parts.grains || parts.cells.visitors_in_reach()));
   parts.cells.valid = last[0] == 0.0;
-  if (options.transfer == MPMIncompressibleOptions::AUTO) {
-    const double rest = std::sqrt(last[1]), smooth = std::sqrt(last[2]);
-    options.flip = smooth > 0.0
-        ? FLIP_OF_SMOOTH * std::clamp((NOISY - rest / smooth) / (NOISY - SMOOTH), 0.0, 1.0)
-        : 0.0;
-  }
+  only_forces = only_forces && only_forces_work(parts, options);
+  if (!is_new) energy.look(last[4], last[5], atom->natoms);
+  if (options.transfer == MPMIncompressibleOptions::AUTO) find_share(last[1], last[2]);
   if (parts.grains && !parts.cells.valid) parts.grains->list();
   parts.cells.find_cells();
 }
@@ -332,7 +334,7 @@ void MPMFlow::find_wet_cells()
 
 void MPMFlow::faces_to_points()
 {
-  double shift_energy[2] = {0.0, 0.0};
+  double shift_energy[2] = {0.0, 0.0}, step_energy[2] = {0.0, 0.0};
   const MPMFlowUpdate update = {
       options.flip,
       !now.keeps   ? nullptr
@@ -348,22 +350,53 @@ void MPMFlow::faces_to_points()
       parts.solids.get(),
       options.transfer == MPMIncompressibleOptions::AUTO ? unseen : nullptr,
       shift_energy,
+      only_forces && energy.gain() > GAIN,
+      step_energy,
       options.sharp ? fields.paths.data() : nullptr,
       liquids.largest_viscosity,
       parts.viscosities.get()};
   parts.cells.valid = get_from_cells(parts.cells, points_now(now.dt), fields.velocity.data(),
                                      update, fields.pressures.data(), MPMPoints::get(atom)->tau);
+  energy.kinetic = 0.5 * force->mvv2e * step_energy[0];
+  energy.work += step_energy[1];
   spreading_energy += force->mvv2e * shift_energy[0] - shift_energy[1];
   is_new = begins = false;
   was_leapfrog = is_leapfrog();
 }
 
 /** Sums over all ranks: number of ranks whose cells are not those of their points,
- *  MPMFlowUpdate::squares of the last step, and the energy of spreading. */
-void MPMFlow::sum_last_step(bool valid, double *all) const
+ *  MPMFlowUpdate::squares of the last step, the energy of spreading, and kinetic energy and work of
+ *  MPMFlowEnergy. */
+std::array<double, 6> MPMFlow::sum_last_step(bool valid) const
 {
-  const double mine[4] = {valid ? 0.0 : 1.0, unseen[0], unseen[1], spreading_energy};
-  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
+  const std::array<double, 6> mine = {valid ? 0.0 : 1.0, unseen[0],      unseen[1],
+                                      spreading_energy,  energy.kinetic, energy.work};
+  std::array<double, 6> all;
+  MPI_Allreduce(mine.data(), all.data(), 6, MPI_DOUBLE, MPI_SUM, world);
+  return all;
+}
+
+/** Share that points keep with transfer auto. */
+void MPMFlow::find_share(double unseen_square, double bend_square)
+{
+  const double rest = std::sqrt(unseen_square), smooth = std::sqrt(bend_square);
+  options.flip = smooth > 0.0 && !(only_forces && energy.gain() > GAIN)
+      ? FLIP_OF_SMOOTH * std::clamp((NOISY - rest / smooth) / (NOISY - SMOOTH), 0.0, 1.0)
+      : 0.0;
+}
+
+/** At the end of a run: warns of energy that numerical errors have added to its points. */
+void MPMFlow::report_gain()
+{
+  const auto [gain, most] = energy.largest_gain();
+  if (comm->me || !only_forces || !(gain > MUCH_GAIN)) return;
+  error->warning(
+      FLERR,
+      "{}: numerical errors have added up to {:.0f} % of the largest kinetic energy ({:.4g}) to "
+      "the points in this run: films and jets are thinner than the node spacing; use a smaller "
+      "spacing{}",
+      who, 100.0 * gain, most,
+      options.transfer == MPMIncompressibleOptions::APIC ? "" : ", or transfer apic");
 }
 
 MPMFlowPoints MPMFlow::points_now(double dt) const
@@ -500,6 +533,7 @@ void MPMFlow::end_run()
   if (is_new) return;
   sum_before = sum_over_points(atom->v, size);
   force_before = sum_over_points(atom->f, size);
+  report_gain();
 }
 
 /* ----------------------------------------------------------------------
@@ -657,8 +691,7 @@ std::vector<double> MPMFlow::restart_data() const
   tagint tag;
   double mine = stable_dt(tag), limit;
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
-  double last[4];
-  sum_last_step(true, last);
+  const auto last = sum_last_step(true);
   double size;
   std::vector<double> state = {dt_before,
                                limit,
@@ -670,7 +703,10 @@ std::vector<double> MPMFlow::restart_data() const
                                0.0,
                                is_new ? sum_before : sum_over_points(atom->v, size),
                                is_new ? force_before : sum_over_points(atom->f, size),
-                               (double) was_leapfrog};
+                               (double) was_leapfrog,
+                               (double) only_forces};
+  const auto energies = energy.state(last[4], last[5]);
+  state.insert(state.end(), energies.begin(), energies.end());
   if (parts.regions) {
     const auto motion = parts.regions->motion();
     state[6] = (double) motion.size();
@@ -686,7 +722,7 @@ std::vector<double> MPMFlow::restart_data() const
 
 void MPMFlow::restart(const std::string &id, const char *buf)
 {
-  constexpr std::size_t NFIXED = 11;
+  constexpr std::size_t NFIXED = 12 + MPMFlowEnergy::NREAL;
   const auto all = read_state(lmp, id, buf);
   if (all.size() < NFIXED * sizeof(double)) refuse_state(lmp, id);
   const auto *const state = (const double *) all.data();
@@ -699,6 +735,8 @@ void MPMFlow::restart(const std::string &id, const char *buf)
   sum_before = state[8];
   force_before = state[9];
   was_leapfrog = state[10] > 0.0;
+  only_forces = state[11] > 0.0;
+  energy.set_state(state + 12, comm->me == 0);
   const auto nmotion = (std::size_t) state[6], ngas = (std::size_t) state[7];
   if (all.size() != (NFIXED + nmotion + ngas) * sizeof(double)) refuse_state(lmp, id);
   if (parts.regions) parts.regions->set_motion({from, from + nmotion});

@@ -12,6 +12,7 @@
 #include "base/mpm_rows.h"
 #include "base/mpm_stage_list.h"
 #include "flow/mpm_flow_checks.h"
+#include "flow/mpm_flow_energy.h"
 #include "flow/mpm_flow_momentum.h"
 #include "flow/mpm_flow_parts.h"
 
@@ -110,6 +111,8 @@ class MPMFlow : protected Pointers {
   bool stiffness_known = false;     // was check_stiffness() done in this run?
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
   double spreading_energy = 0.0;
+  MPMFlowEnergy energy;
+  bool only_forces = true;    // only_forces_work() in all steps since energies begin
   double fastest = 0.0;
 
   void choose_transfer();
@@ -124,7 +127,9 @@ class MPMFlow : protected Pointers {
   void find_paths();
   void find_shift();
   void faces_to_points();
-  void sum_last_step(bool valid, double *all) const;
+  std::array<double, 6> sum_last_step(bool valid) const;
+  void find_share(double unseen, double bend);
+  void report_gain();
   MPMFlowPoints points_now(double dt) const;
   double limit_of_motion(double dt, tagint &tag) const;
   void find_velocities();

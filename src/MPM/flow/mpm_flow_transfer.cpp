@@ -422,15 +422,15 @@ void keep_unseen(const MPMFlowUpdate &update, double mass, const double *now, co
   }
 }
 
-/** Changes the velocity v of point i by its gradient along a shift. Adds the change of the kinetic
- *  energy and the work of forces to energy[2]. */
+/** Changes the velocity v of point i by its gradient along a shift, unless it keeps the velocity.
+ *  Adds the change of the kinetic energy and the work of forces to energy[2]. */
 template <int dim>
-void change_by_shift(const MPMFlowPoints &points, int i, const double *shift, double *v,
+void change_by_shift(const MPMFlowPoints &points, int i, const double *shift, bool keeps, double *v,
                      double *energy)
 {
   double before = 0.0, after = 0.0, work = 0.0;
   for (int c = 0; c < dim; c++) before += v[c] * v[c];
-  if (points.gradient) move_in_field<dim>(shift, v, points.gradient[i]);
+  if (points.gradient && !keeps) move_in_field<dim>(shift, v, points.gradient[i]);
   for (int c = 0; c < dim; c++) {
     after += v[c] * v[c];
     work += points.f[i][c] * shift[c];
@@ -446,7 +446,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
   bool all_in_reach = true;
-  double squares[2] = {0.0, 0.0};
+  double squares[2] = {0.0, 0.0}, energy[2] = {0.0, 0.0};
   // and, if there are such: those before, those after an impulse, the shift, more
   const double *fields[5] = {velocity};
   const int at_old = 1, at_struck = update.old ? 2 : 1, at_shift = at_struck + !!update.struck,
@@ -518,14 +518,15 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       double shift[dim] = {};
       if (update.shift && !solid) {
         std::copy_n(at_point[at_shift], dim, shift);
-        change_by_shift<dim>(points, i, shift, v, update.shift_energy);
+        change_by_shift<dim>(points, i, shift, update.shift_keeps_velocity, v, update.shift_energy);
       }
 
       // The midpoint rule in the field of velocities, which has no divergence. With all of the
       // change once more, velocities are those in the middle of the step where points were at its
       // start, and paths are straight
 
-      double middle[3] = {x[0], x[1], x[2]}, at_middle[dim];
+      double middle[3] = {x[0], x[1], x[2]}, at_middle[dim], from[dim];
+      std::copy_n(x, dim, from);
       const double *start = now;
       double at_start[dim];
       if (update.paths) {
@@ -545,12 +546,17 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.regions->keep_outside(x, v);
         places.keep_inside(x);
       }
-      for (int c = 0; c < dim; c++) v[c] += half_kick[c];
+      for (int c = 0; c < dim; c++) {
+        v[c] += half_kick[c];
+        energy[0] += points.mass[i] * v[c] * v[c];
+        energy[1] += points.f[i][c] * (x[c] - from[c]);
+      }
       places.find_base(x, base);
       all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
     }
   }
   if (update.squares) std::copy_n(squares, 2, update.squares);
+  if (update.energy) std::copy_n(energy, 2, update.energy);
   return all_in_reach;
 }
 

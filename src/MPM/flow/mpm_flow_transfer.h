@@ -66,6 +66,11 @@ struct MPMFlowUpdate {
   /** Two sums over the points of this rank are added to it, both due to the shift: the change of
    *  the kinetic energy, and the work of forces along the shift. */
   double *shift_energy = nullptr;
+  /** Do points keep their velocities in the shift? */
+  bool shift_keeps_velocity = false;
+  /** Receives two sums over the points of this rank: mass times the square of the velocity after
+   *  the step, and the work of forces along the way in the step. */
+  double *energy = nullptr;
   /** [cell][dim] velocities that points move with; null: their new velocities. */
   const double *paths = nullptr;
   /** Viscosity of the stress that fluid points have in addition to the pressure. */
