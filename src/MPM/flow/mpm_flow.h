@@ -128,6 +128,7 @@ class MPMFlow : protected Pointers {
   void find_shift();
   void faces_to_points();
   std::array<double, 6> sum_last_step(bool valid) const;
+  bool gains() const;
   void find_share(double unseen, double bend);
   void report_gain();
   MPMFlowPoints points_now(double dt) const;

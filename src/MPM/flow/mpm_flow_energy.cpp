@@ -57,7 +57,7 @@ void MPMFlowEnergy::set_state(const double *from, bool is_first)
 
 bool LAMMPS_NS::only_forces_work(const MPMFlowParts &parts, const MPMIncompressibleOptions &options)
 {
-  if (parts.gas || parts.bodies || parts.solids || parts.tension || parts.grains || parts.inflow ||
+  if (parts.gas || parts.bodies || parts.tension || parts.grains || parts.inflow ||
       (parts.regions && parts.regions->largest_speed() > 0.0))
     return false;
   for (const auto &axis_walls : options.walls)

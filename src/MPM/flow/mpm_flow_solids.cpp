@@ -577,13 +577,30 @@ void MPMFlowSolids::load(int m, double dt)
   p.batch.time = elapsed_time(*update);
 }
 
+/** Adds half of the work that the present stresses would do in a step; the pressure does none. */
+void MPMFlowSolids::add_half_of_work(const Pending &p, double dt)
+{
+  const int dim = cells.lattice.dim;
+  for (int k = 0; k < p.n; k++) {
+    const double *const tau = p.tau + 6 * k, *const L = p.L + dim * dim * k;
+    double mean = 0.0, power = 0.0;
+    for (int d = 0; d < dim; d++) mean += tau[d] / dim;
+    for (int c = 0; c < dim; c++)
+      for (int d = 0; d < dim; d++)
+        power += L[dim * d + c] * (tau[SYMMETRIC[c][d]] - (c == d ? mean : 0.0));
+    strain_work += 0.5 * dt * p.volume[k] * power / force->nktv2p;
+  }
+}
+
 void MPMFlowSolids::update_points(int m, double dt)
 {
   auto &p = *pending[m];
   load(m, dt);
   auto &material = *materials[m];
+  add_half_of_work(p, dt);
   material.update_batch(p.batch, *kernels);
   kernels->store(p.batch, p.F, p.tau);
+  add_half_of_work(p, dt);
   const int width = material.nhistory;
   if (width) kernels->store_history(p.batch, width, p.rows.data());
   const auto &points = *MPMPoints::get(atom);

@@ -17,6 +17,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace MPM_NS {
@@ -87,6 +88,9 @@ class MPMFlowSolids : protected Pointers {
       int groupbit,
       const std::function<void(const MPM_NS::Batch &, const int *, const FixMPMMaterial &)> &);
 
+  /** Work of the deviators of stresses on the points of this rank since the last call (energy). */
+  double take_work() { return std::exchange(strain_work, 0.0); }
+
   double memory_usage() const;
 
  private:
@@ -99,6 +103,7 @@ class MPMFlowSolids : protected Pointers {
   std::vector<std::unique_ptr<Pending>> pending;    // points of each material
   const MPM_NS::BatchKernels *kernels;
   std::vector<double> history;
+  double strain_work = 0.0;
   std::vector<double> shares;         // [cell][kind of box][2] volume of solids and of all points
   std::vector<double> solid_share;    // [cell]
   std::vector<double> faces;          // [cell][2 dim] zeros, and volumes around faces
@@ -146,6 +151,7 @@ class MPMFlowSolids : protected Pointers {
     };
   }
   void load(int material, double dt);
+  void add_half_of_work(const Pending &, double dt);
   void update_points(int material, double dt);
   void probe(int material);
   double stiffness_at_rest(int material, double dt);

@@ -513,12 +513,13 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
       for (int c = 0; c < dim; c++) half_kick[c] = update.half_kick_share * (v[c] - half_kick[c]);
       if (points.gradient)
         for (int e = 0; e < NSLOPE; e++)
-          points.gradient[i][e] = G[e] / unit_of<dim>(e, cells.lattice.h);
+          points.gradient[i][e] = solid && update.gains ? 0.0
+                                                        : G[e] / unit_of<dim>(e, cells.lattice.h);
 
       double shift[dim] = {};
       if (update.shift && !solid) {
         std::copy_n(at_point[at_shift], dim, shift);
-        change_by_shift<dim>(points, i, shift, update.shift_keeps_velocity, v, update.shift_energy);
+        change_by_shift<dim>(points, i, shift, update.gains, v, update.shift_energy);
       }
 
       // The midpoint rule in the field of velocities, which has no divergence. With all of the

@@ -66,8 +66,9 @@ struct MPMFlowUpdate {
   /** Two sums over the points of this rank are added to it, both due to the shift: the change of
    *  the kinetic energy, and the work of forces along the shift. */
   double *shift_energy = nullptr;
-  /** Do points keep their velocities in the shift? */
-  bool shift_keeps_velocity = false;
+  /** Has the flow gained energy? Points then keep their velocities in the shift, and those of
+   *  solids have no gradients, which damps them. */
+  bool gains = false;
   /** Receives two sums over the points of this rank: mass times the square of the velocity after
    *  the step, and the work of forces along the way in the step. */
   double *energy = nullptr;
