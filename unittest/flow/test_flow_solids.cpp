@@ -313,22 +313,25 @@ SERIAL_TEST(FlowSolids, ColumnInAir)
     }
 }
 
-// its kinetic energy stays near that of its first swing, (rho g)^2 H^3 W/(6 E'): surfaces of solids
-// gain energy where they lie between nodes, which was 3.8 times this, and is at most 1.7 times
+// its kinetic energy stays that of its first swing, (rho g)^2 H^3 W/(6 E'): surfaces of solids gain
+// energy where they lie between nodes, which was 285 times this, with apic 43 times, after 600
 SERIAL_TEST(FlowSolids, ColumnGainsNoEnergy)
 {
-  const double g = 0.004, H = 8.5;
-  Scene run(plane("lj", "f f", "0 14 0 10", 1, 0.5) +
-            "region c block 4 9 0 8.5 INF INF\ncreate_points 1 region c spacing 0.5\n"
-            "displace_atoms all move 0.9 0 0\nfix m all " +
+  const double g = 1.18e-4, theory = g * g * 8000.0 * 5.0 / 24.0;
+  Scene run(plane("lj", "f f", "0 14 0 22", 1, 0.5) +
+            "region c block 4 9 0 20 INF INF\ncreate_points 1 region c spacing 0.5\n"
+            "displace_atoms all move 0.05 0 0\nfix m all " +
             neohookean(1.0, 1.0) + "fix w all mpm/incompressible 1 1 solid all\n" +
             strprintf("fix g all gravity %.17g vector 0 -1 0\ntimestep 0.2\n", g));
-  double most = 0.0;
-  for (int k = 0; k < 300; k++) {
+  double most = 0.0, fourth = 0.0;
+  for (int k = 0; k < (is_quick() ? 150 : 300); k++) {
     run.commands("run 10");
-    most = std::max(most, run.fix("w")->compute_vector(5));
+    const double energy = run.fix("w")->compute_vector(5);
+    most = std::max(most, energy);
+    if (k < 40) fourth = std::max(fourth, k >= 30 ? energy : 0.0);
   }
-  EXPECT_LT(measured("kinetic energy over theory", most / (g * g * H * H * H * 5.0 / 24.0)), 2.2);
+  EXPECT_NEAR(measured("kinetic energy over theory, fourth swing", fourth / theory), 1.0, 0.05);
+  EXPECT_LT(measured("most", most / theory), 1.5);
 }
 
 // a beam that stands on a floor is loaded across at once: its end goes to twice its deflection at
