@@ -159,9 +159,11 @@ void MPMLedger::account_for_forces(const NodeSums &sums)
 void MPMLedger::account_for_points()
 {
   if (common || !starts.empty()) {
-    const double work = work_on_points();
+    double late = 0.0;
+    const double work = work_on_points(late);
     external += work - work_at_nodes;
-    transfer -= work - work_at_nodes;
+    transfer -= work - late - work_at_nodes;
+    internal += late;    // an error of the integration
     starts.clear();
   }
   const double kinetic = point_kinetic_energy();
@@ -256,20 +258,24 @@ void MPMLedger::note_starts()
     }
 }
 
-/** Work of forces in this step on the way that points have gone, less half of what the step has
- *  changed of their velocities: forces are those of the start of the step, and the velocities that
- *  kinetic energies are made of belong to the middles of this step and of the one before. */
-double MPMLedger::work_on_points() const
+/** Work of forces along the way of points from the middle of the step before to that of this one:
+ *  forces are those of the start of the step, and the velocities that kinetic energies are made of
+ *  belong to these middles. Where steps vary, forces have acted for another time than between
+ *  them: late receives the work along the difference. */
+double MPMLedger::work_on_points(double &late) const
 {
-  const double half = 0.5 * field.step_dt();
+  const double half = 0.5 * field.step_dt(), half_before = 0.5 * field.step_dt_before();
+  const double unit = force->mvv2e * force->ftm2v;
   if (common) {
     if (!is_accelerated()) return 0.0;
     const PointSums now = sums_along_acceleration();
-    return force->mvv2e * force->ftm2v *
-        (now.place - before_motion.place - half * (now.velocity - before_motion.velocity));
+    late = unit * (half_before - half) * before_motion.velocity;
+    return unit *
+        (now.place - before_motion.place - half * now.velocity +
+         half_before * before_motion.velocity);
   }
   const double *const f = field.rows().f;
-  double sum = 0.0;
+  double sum = 0.0, before = 0.0;
   for (const auto &run : field.map->runs)
     for (int i = run.first; i < run.last; i++) {
       const bigint row = 3 * (bigint) i;
@@ -277,10 +283,12 @@ double MPMLedger::work_on_points() const
       for (int d = 0; d < field.lattice.dim; d++) {
         double of_others = f[row + d];
         for (const auto *ifix : field.elements) of_others -= ifix->forces()[row + d];
-        sum += of_others * (atom->x[i][d] - x[d] - half * (atom->v[i][d] - v[d]));
+        sum += of_others * (atom->x[i][d] - x[d] - half * atom->v[i][d] + half_before * v[d]);
+        before += of_others * v[d];
       }
     }
-  return force->mvv2e * force->ftm2v * sum;
+  late = unit * (half_before - half) * before;
+  return unit * sum;
 }
 
 /** Is there a mass that can take it? */

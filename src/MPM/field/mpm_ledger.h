@@ -137,7 +137,7 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   void account_for_forces(const NodeSums &);
   void account_at_points();
   void note_starts();
-  double work_on_points() const;
+  double work_on_points(double &late) const;
   double stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;
 };
 

@@ -149,13 +149,12 @@ void MPMEnergyWatch::note(int field, int i, int turns)
   seen.push_back({field, i, turns, {x[0], x[1], x[2]}, {v[0], v[1], v[2]}});
 }
 
-/** Work of forces in this step, at the mean of the velocities of nodes before and after it: that is
- *  the way that points went, less half of what the step has changed. Points' own velocities would
- *  not do: those of flip and aflip differ from what moves points. Forces that elements have added
- *  are internal. */
+/** Work of forces from the middle of the step before to that of this one, where their velocities
+ *  belong, see MPMLedger::work_on_points(). Points' own velocities would not do for the way: those
+ *  of flip and aflip differ from what moves points. Forces that elements have added are internal. */
 void MPMEnergyWatch::moved()
 {
-  const double half = 0.5 * fields[0]->step_dt();
+  const double half = 0.5 * fields[0]->step_dt(), half_before = 0.5 * fields[0]->step_dt_before();
   const int dim = fields[0]->lattice.dim;
   find_forces();
   const double *const places = seen.empty() ? nullptr : atom->x[0],
@@ -165,8 +164,10 @@ void MPMEnergyWatch::moved()
     const double *const x_now = places + row, *const v_now = velocities + row;
     double now[3], work = 0.0;
     force_on(field, i, now);
-    for (int d = 0; d < dim; d++) work += now[d] * (x_now[d] - x[d] - half * (v_now[d] - v[d]));
-    if (dim < 3) work += now[2] * half * (v_now[2] + v[2]);    // around an axis of symmetry
+    for (int d = 0; d < dim; d++)
+      work += now[d] * (x_now[d] - x[d] - half * v_now[d] + half_before * v[d]);
+    // around an axis of symmetry
+    if (dim < 3) work += now[2] * (half * v_now[2] + half_before * v[2]);
     run.force_work += turns * work;
   }
   run.steps++;
@@ -389,10 +390,11 @@ void MPMEnergyWatch::look_for_loss(double mass)
     error->warning(
         FLERR,
         "Transfers have taken {:.3g} % of the energy in play ({:.4g}) by step {} of this "
-        "run: motion is damped. Use a smaller spacing, transfer aflip 0.99, shape linear "
-        "transfer flip 1.0 scheme musl, or fewer steps (fix mpm/dt 0.4); fix mpm ... gain ignore "
-        "accepts it",
-        100.0 * took / run.in_play, run.in_play, update->ntimestep);
+        "run: motion is damped. Use a smaller spacing, {}; fix mpm ... gain ignore accepts it",
+        100.0 * took / run.in_play, run.in_play, update->ntimestep,
+        fields[0]->options.total ? "or transfer apic"
+                                 : "transfer aflip 0.99, shape linear transfer flip 1.0 scheme "
+                                   "musl, or fewer steps (fix mpm/dt 0.4)");
 }
 
 std::string MPMEnergyWatch::report() const
