@@ -149,6 +149,21 @@ SERIAL_TEST(FullBox, HasTheVolumesOfItsPoints)
       }
 }
 
+// A layer of a cell has no nodes inside: those behind the floor, which hardly reach it, do not count
+TEST(Layer, IsTooThinToTell)
+{
+  for (const char *depth : {"0.1", "0.15"}) {
+    Scene run;
+    const std::string log =
+        log_of(run,
+               plane("si", "f f", "0 1.2 0 1.2", 1, 0.02) +
+                   "fix flow all mpm 0.1\nregion r block 0 1.2 0 " + depth +
+                   " INF INF\ncreate_points 1 region r ppc 2\n"
+                   "fix m all mpm/material density 1000 eos tait 1e5 7\ntimestep 2e-3\nrun 400\n");
+    EXPECT_EQ(log.find("nside of"), std::string::npos) << log;
+  }
+}
+
 // Without the correction, water is lost, and the user is told.
 SERIAL_TEST(Water, LossIsTold)
 {

@@ -57,6 +57,8 @@ static constexpr int CORRECT_EVERY = 30, LOOK_EVERY = 400, LOOK_AT_GAS = 200, LA
 // reaches, the last one may be half full, and round-off must not decide; wider ones: at most .17
 static constexpr double FULL = 0.4, FULL_LINEAR = 0.53;
 static constexpr double HARDLY = 1.0e-3;
+// share of the function of a node in the box that is next to nothing: points hardly sample it
+static constexpr double LITTLE = 0.25;
 static constexpr double MOST_DRIFT = 0.02;    // mean difference of fillings from one: a warning
 static constexpr double DEVIATIONS = 3.0;     // standard deviations of that mean
 // greatest share of an excess that is corrected at a time, and greatest excess: a larger change of
@@ -239,7 +241,6 @@ void MPMVolumeDrift::find_strain()
  *  surface. */
 void MPMVolumeDrift::mark_points_at_surfaces()
 {
-  constexpr double LITTLE = 0.25;
   const Shape shape = field.options.shape;
   const double full = shape == QUADRATIC || shape == CUBIC ? FULL : FULL_LINEAR;
   auto &work = field.work;
@@ -269,13 +270,14 @@ void MPMVolumeDrift::find_inside()
     }
   }
   sum_at_nodes();
-  double mine[4] = {0.0}, all[4];
+  double mine[5] = {0.0}, all[5];
   for (std::size_t n = 0; n < fill.size(); n++) {
     double *const record = &work.nodes[NREAL * n];
     const double excess = fill[n] - 1.0;
     const bool is_inside = record[3] > 0.0 && record[0] < HARDLY * record[3];
     if (is_inside && field.grid.owns((int64_t) n)) {
       mine[0] += 1.0;
+      mine[4] += part[n] > LITTLE;
       mine[1] += part[n];
       mine[2] += part[n] * excess;
       mine[3] += part[n] * excess * excess;
@@ -284,9 +286,9 @@ void MPMVolumeDrift::find_inside()
     record[2] = is_inside ? 0.0 : 1.0;
     if (record[3] > 0.0) record[1] /= record[3];
   }
-  MPI_Allreduce(mine, all, 4, MPI_DOUBLE, MPI_SUM, world);
-  inside.nodes = all[0];
-  if (all[0] == 0.0) return;
+  MPI_Allreduce(mine, all, 5, MPI_DOUBLE, MPI_SUM, world);
+  inside.nodes = all[4] > 0.0 ? all[0] : 0.0;    // a layer of a cell has none but those in the wall
+  if (inside.nodes == 0.0) return;
   inside.mean = 1.0 + all[2] / all[1];
   inside.rms = std::sqrt(all[3] / all[1]);
 }
