@@ -149,6 +149,20 @@ SERIAL_TEST(FullBox, HasTheVolumesOfItsPoints)
       }
 }
 
+// volumes that differ very much from node to node are no excuse for a mean that is far from one
+TEST(FullBox, LargeDifferencesAreTold)
+{
+  Scene run(plane("si", "f f", "0 2 0 2", 1, 0.3) +
+            "create_points 1 box spacing 0.5\nfix grid all mpm 1 drift 0\n"
+            "fix m all mpm/material density 1 eos tait 1e-6 7\ntimestep 1e-3\n");
+  for (int i = 0; i < run.n(); i++)
+    if (run.lmp->atom->tag[i] == 1) {
+      run.lmp->atom->vfrac[i] *= 60.0;
+      run.mass()[i] *= 60.0;
+    }
+  EXPECT_THAT(log_of(run, "run 400\n"), HasSubstr("volumes and places have drifted apart"));
+}
+
 // A layer of a cell has no nodes inside: those behind the floor, which hardly reach it, do not count
 TEST(Layer, IsTooThinToTell)
 {

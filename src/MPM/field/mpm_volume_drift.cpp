@@ -60,7 +60,8 @@ static constexpr double HARDLY = 1.0e-3;
 // share of the function of a node in the box that is next to nothing: points hardly sample it
 static constexpr double LITTLE = 0.25;
 static constexpr double MOST_DRIFT = 0.02;    // mean difference of fillings from one: a warning
-static constexpr double DEVIATIONS = 3.0;     // standard deviations of that mean
+// standard deviations of that mean, and the largest difference that may be chance
+static constexpr double DEVIATIONS = 3.0, MOST_CHANCE = 0.3;
 // greatest share of an excess that is corrected at a time, and greatest excess: a larger change of
 // the pressure would make noise; that share of differences of the pressure must be less than one
 static constexpr double MOST_SHARE = 0.2, MOST_EXCESS = 0.3, SPREAD = 3.75;
@@ -336,7 +337,8 @@ void MPMVolumeDrift::note(int every)
   const double drift = inside.lasting - 1.0;
   // other bodies may have pores, such as a heap of strands or chips
   const double wrong = corrects ? std::fabs(drift) : drift;
-  if (warned || wrong < MOST_DRIFT + DEVIATIONS * inside.rms / std::sqrt(inside.nodes)) return;
+  const double chance = DEVIATIONS * inside.rms / std::sqrt(inside.nodes);
+  if (warned || wrong < MOST_DRIFT + std::min(MOST_CHANCE, chance)) return;
   warned = true;
   if (comm->me == 0)
     error->warning(FLERR,
