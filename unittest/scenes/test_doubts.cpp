@@ -35,6 +35,16 @@ SERIAL_TEST(Doubts, HeatWhereNothingIs)
   EXPECT_EQ(told(scene + "region hot block 0 0.5 0.2 1 INF INF\n" + hot, inside), 1);
   EXPECT_EQ(told(scene + "region hot block 0 1 0.4 1 INF INF\n" + hot, inside), 0);
   EXPECT_EQ(told(scene + "region hot block 0.2 0.8 0 0.4 INF INF side out\n" + hot, inside), 0);
+  const std::string far = "no material that conducts is within 1.5 node spacings";
+  EXPECT_EQ(told(scene + "region hot block 0.9 1 0.1 0.3 INF INF\n" + hot, far), 1);
+  EXPECT_EQ(told(scene + "region hot block 0.8 1 0.1 0.3 INF INF\n" + hot, far), 0);
+  EXPECT_EQ(told(scene + "region hot block 0.2 0.8 0 0.4 INF INF side out\n" + hot, far), 0);
+  EXPECT_EQ(told(scene +
+                     "variable x equal -time\nregion hot block 0.9 1 0.1 0.3 INF INF move v_x "
+                     "NULL NULL\n" +
+                     hot,
+                 far),
+            0);
 }
 
 SERIAL_TEST(Doubts, WaterAndSoil)

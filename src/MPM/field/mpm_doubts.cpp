@@ -71,7 +71,8 @@ static const Doubt table[] = {
      "temperature?"},
     {1.0e-30, 0.5,
      "it is pressed flat where it stands: are modulus, density, and gravity in the units of the "
-     "input?"}};
+     "input?"},
+    {1.0, 1.0, "no heat goes there before material comes: is it the right region?"}};
 
 void MPMDoubts::check(Kind kind, double ratio, const std::string &who, const std::string &what)
 {

@@ -38,7 +38,8 @@ class MPMDoubts : protected Pointers {
     COLD_METAL,       ///< temperature over the reference temperature of a strength
     MOLTEN,           ///< temperature over the melting temperature of a strength
     MOLTEN_WALL,      ///< temperature of a wall over this melting temperature
-    SOFT_SOLID        ///< modulus of a solid at rest over the pressure of its own weight
+    SOFT_SOLID,       ///< modulus of a solid at rest over the pressure of its own weight
+    REGION_ALONE      ///< 1: no material is near the surface of a region with a condition
   };
 
   explicit MPMDoubts(class LAMMPS *lmp) : Pointers(lmp) {}

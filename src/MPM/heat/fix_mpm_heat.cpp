@@ -187,10 +187,11 @@ void FixMPMHeat::setup(int)
 /** Conditions where no material is, or where it is inside of what is a wall for heat. */
 void FixMPMHeat::check_places()
 {
-  constexpr double FAR = std::numeric_limits<double>::max();
+  constexpr double FAR = std::numeric_limits<double>::max(), NEAR = 1.5;
   double mine[MPMHeatFaces::NFACE], least[MPMHeatFaces::NFACE];
   std::fill_n(mine, (int) MPMHeatFaces::NFACE, FAR);
-  std::vector<bigint> inside(options.surfaces.size(), 0), all(inside.size());
+  const std::size_t nregion = options.surfaces.size();
+  std::vector<bigint> places(2 * nregion + 1, 0), all(places.size());    // inside, near; any
   std::vector<std::unique_ptr<MPMRegionSurface>> regions;
   for (const auto &one : options.surfaces) {
     auto *const region = one.region.empty() ? nullptr : domain->get_region_by_id(one.region);
@@ -211,12 +212,17 @@ void FixMPMHeat::check_places()
         const double at = face % 2 ? domain->boxhi[d] - x[d] : x[d] - domain->boxlo[d];
         mine[face] = std::min(mine[face], at / h);
       }
-      for (std::size_t k = 0; k < regions.size(); k++)
-        inside[k] += regions[k] && regions[k]->distance(x, 1.01 * h) < -h;
+      places[2 * nregion]++;
+      for (std::size_t k = 0; k < nregion; k++) {
+        if (!regions[k]) continue;
+        const double distance = regions[k]->distance(x, (NEAR + 0.01) * h);
+        places[k] += distance < -h;
+        places[nregion + k] += std::fabs(distance) < NEAR * h;
+      }
     }
   }
   MPI_Allreduce(mine, least, (int) MPMHeatFaces::NFACE, MPI_DOUBLE, MPI_MIN, world);
-  MPI_Allreduce(inside.data(), all.data(), (int) all.size(), MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(places.data(), all.data(), (int) all.size(), MPI_LMP_BIGINT, MPI_SUM, world);
   const std::string who = fmt::format("Fix mpm/heat {}", id);
   for (int face = 0; face < MPMHeatFaces::NFACE; face++)
     if (options.conditions[face].kind != MPMHeatCondition::INSULATED && least[face] < FAR)
@@ -225,12 +231,19 @@ void FixMPMHeat::check_places()
           fmt::format("{} has a condition, and the nearest material that conducts is {:.3g} "
                       "node spacings away from it",
                       MPMHeatOptions::FACE_NAME[face], least[face]));
-  for (std::size_t k = 0; k < regions.size(); k++)
-    if (options.surfaces[k].condition.kind != MPMHeatCondition::INSULATED)
-      doubts.check(MPMDoubts::INSIDE_REGION, (double) all[k], who,
-                   fmt::format("{} points are in region {}, more than a node spacing below its "
-                               "surface",
-                               all[k], options.surfaces[k].region));
+  for (std::size_t k = 0; k < nregion; k++) {
+    if (options.surfaces[k].condition.kind == MPMHeatCondition::INSULATED) continue;
+    doubts.check(MPMDoubts::INSIDE_REGION, (double) all[k], who,
+                 fmt::format("{} points are in region {}, more than a node spacing below its "
+                             "surface",
+                             all[k], options.surfaces[k].region));
+    auto *const region = domain->get_region_by_id(options.surfaces[k].region);
+    if (region && !region->dynamic_check() && all[2 * nregion] > 0)
+      doubts.check(MPMDoubts::REGION_ALONE, all[nregion + k] == 0 ? 1.0 : 0.0, who,
+                   fmt::format("region {} has a condition, and no material that conducts is within "
+                               "{} node spacings of its surface",
+                               options.surfaces[k].region, NEAR));
+  }
 }
 
 void FixMPMHeat::check_temperatures()
