@@ -1016,6 +1016,38 @@ SERIAL_TEST(Column, FallsInAFewSteps)
             0.005);
 }
 
+// axes that change their places change nothing else: points anywhere, which spread
+SERIAL_TEST(Space, HasNoFirstAxis)
+{
+  std::vector<Scene::State> states[2];
+  for (const int k : {0, 1}) {
+    Scene run(box(3, "si", "f f f", "0 4 0 4 0 4", 1, 0.5) +
+              "create_points 1 box spacing 0.5\nfix w all mpm/incompressible 1 1 tolerance 1e-13\n"
+              "timestep 0.2\n");
+    for (int i = 0; i < run.n(); i++) {
+      const double t = (double) run.lmp->atom->tag[i];
+      const auto at = [&](double step) {
+        return 4.0 * (step * t - std::floor(step * t));
+      };
+      const double x[3] = {at(0.7548776662), at(0.5698402910), at(0.4301597090)};
+      const double v[3] = {std::sin(x[1]), std::cos(2.0 * x[2]), std::sin(x[0] + x[1])};
+      for (int d = 0; d < 3; d++) {
+        const int to = k && d < 2 ? 1 - d : d;
+        run.x()[i][to] = x[d];
+        run.v()[i][to] = v[d];
+      }
+    }
+    run.commands("run 5\n");
+    states[k] = run.gather();
+  }
+  for (std::size_t i = 0; i < states[0].size(); i++)
+    for (int d = 0; d < 3; d++) {
+      const int to = d < 2 ? 1 - d : d;
+      EXPECT_NEAR(states[0][i].x[d], states[1][i].x[to], 1e-9) << i;
+      EXPECT_NEAR(states[0][i].v[d], states[1][i].v[to], 1e-9) << i;
+    }
+}
+
 const std::string thrown =    // a block that hits walls in a corner, in short steps
     plane("si", "f f", "0 2 0 1", 1, 0.02) +
     "region block block 0.2 0.7 0.05 0.55 INF INF\ncreate_points 1 region block spacing 0.025\n"

@@ -186,6 +186,20 @@ TEST_F(Random, IsSmoothAndTheSameFromAnywhere)
     EXPECT_NEAR(f(12.0 + h) - f(12.0), f(12.0) - f(12.0 - h), 10 * h * h);
     EXPECT_NE(f(12.0 + h), f(12.0 - h));
   }
+
+  // and along each axis, across what lies between the nodes of its splines
+  for (int axis = 0; axis < 3; axis++) {
+    const double h = 1e-3;
+    double last[2] = {};
+    for (int n = 0; n < 1000; n++) {
+      double x[3] = {3.1, 4.3, 5.7};
+      x[axis] += n * h;
+      const double f = a.value(x);
+      if (n > 1) EXPECT_NEAR(f - last[0], last[0] - last[1], 20 * h * h) << axis << ' ' << n;
+      last[1] = last[0];
+      last[0] = f;
+    }
+  }
 }
 
 // factors have mean 1 and the coefficient of variation that was asked for
