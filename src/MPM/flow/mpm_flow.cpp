@@ -118,7 +118,6 @@ void MPMFlow::start()
   if (is_new) {
     dt_before = 0.0;
     energy.begin();
-    only_forces = true;
     if (gradient) fit_gradients(points_now(0.0));
   }
   give_to_cells(parts.cells, points_now(0.0), fields.sums);
@@ -298,8 +297,7 @@ void MPMFlow::find_cells()
   const auto last =
       sum_last_step(parts.cells.valid && (!parts.grains || parts.cells.visitors_in_reach()));
   parts.cells.valid = last[0] == 0.0;
-  only_forces = only_forces && only_forces_work(parts, options);
-  if (!is_new) energy.look(last[4], last[5], atom->natoms);
+  if (!is_new) energy.look(last[4], last[5], atom->natoms, only_forces_work(parts, options));
   find_share(last[1], last[2]);
   if (parts.grains && !parts.cells.valid) parts.grains->list();
   parts.cells.find_cells();
@@ -381,7 +379,7 @@ std::array<double, 6> MPMFlow::sum_last_step(bool valid) const
 /** Have numerical errors added so much energy that points have to lose some? */
 bool MPMFlow::gains() const
 {
-  return only_forces && energy.gain() > (parts.solids ? GAIN_OF_SOLIDS : GAIN);
+  return energy.gain() > (parts.solids ? GAIN_OF_SOLIDS : GAIN);
 }
 
 /** Share that points keep by default. */
@@ -403,7 +401,7 @@ void MPMFlow::find_share(double unseen_square, double bend_square)
 void MPMFlow::report_gain()
 {
   const auto [gain, most] = energy.largest_gain();
-  if (comm->me || !only_forces || !(gain > (parts.solids ? GAIN_OF_SOLIDS : MUCH_GAIN))) return;
+  if (comm->me || !(gain > (parts.solids ? GAIN_OF_SOLIDS : MUCH_GAIN))) return;
   error->warning(
       FLERR,
       "{}: numerical errors have added up to {:.0f} % of the largest kinetic energy ({:.4g}) to "
@@ -718,8 +716,7 @@ std::vector<double> MPMFlow::restart_data() const
                                0.0,
                                is_new ? sum_before : sum_over_points(atom->v, size),
                                is_new ? force_before : sum_over_points(atom->f, size),
-                               (double) was_leapfrog,
-                               (double) only_forces};
+                               (double) was_leapfrog};
   const auto energies = energy.state(last[4], last[5]);
   state.insert(state.end(), energies.begin(), energies.end());
   if (parts.regions) {
@@ -737,7 +734,7 @@ std::vector<double> MPMFlow::restart_data() const
 
 void MPMFlow::restart(const std::string &id, const char *buf)
 {
-  constexpr std::size_t NFIXED = 12 + MPMFlowEnergy::NREAL;
+  constexpr std::size_t NFIXED = 11 + MPMFlowEnergy::NREAL;
   const auto all = read_state(lmp, id, buf);
   if (all.size() < NFIXED * sizeof(double)) refuse_state(lmp, id);
   const auto *const state = (const double *) all.data();
@@ -750,8 +747,7 @@ void MPMFlow::restart(const std::string &id, const char *buf)
   sum_before = state[8];
   force_before = state[9];
   was_leapfrog = state[10] > 0.0;
-  only_forces = state[11] > 0.0;
-  energy.set_state(state + 12, comm->me == 0);
+  energy.set_state(state + 11, comm->me == 0);
   const auto nmotion = (std::size_t) state[6], ngas = (std::size_t) state[7];
   if (all.size() != (NFIXED + nmotion + ngas) * sizeof(double)) refuse_state(lmp, id);
   if (parts.regions) parts.regions->set_motion({from, from + nmotion});

@@ -112,7 +112,6 @@ class MPMFlow : protected Pointers {
   double unseen[2] = {0.0, 0.0};    // MPMFlowUpdate::squares of the last step
   double spreading_energy = 0.0;
   MPMFlowEnergy energy;
-  bool only_forces = true;    // only_forces_work() in all steps since energies begin
   double fastest = 0.0;
 
   void choose_transfer();

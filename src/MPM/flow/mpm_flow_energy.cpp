@@ -21,10 +21,13 @@ void MPMFlowEnergy::begin()
   *this = MPMFlowEnergy();
 }
 
-void MPMFlowEnergy::look(double all_kinetic, double all_work, bigint n)
+void MPMFlowEnergy::look(double all_kinetic, double all_work, bigint n, bool counts)
 {
   const double now = all_kinetic - all_work;
-  if (n != npoints) least = npoints < 0 ? now : least + (now - last);
+  if (npoints < 0)
+    least = now;
+  else if (n != npoints || !counts)
+    least += now - last;
   npoints = n;
   last = now;
   least = std::min(least, now);

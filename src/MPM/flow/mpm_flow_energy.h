@@ -27,9 +27,9 @@ class MPMFlowEnergy {
 
   /** Begins anew: points have other velocities. */
   void begin();
-  /** Start of a step, with sums of the above over all ranks. npoints: others come or go with their
-   *  energy, which does not count. */
-  void look(double all_kinetic, double all_work, bigint npoints);
+  /** Start of a step, with sums of the above over all ranks. counts: only_forces_work() in the step
+   *  before. npoints: if others come or go with their energy, the step does not count, either. */
+  void look(double all_kinetic, double all_work, bigint npoints, bool counts);
   /** Energy that work does not explain now, over the largest kinetic energy so far. */
   double gain() const { return most > 0.0 ? (last - least) / most : 0.0; }
   /** The largest gain() since the last call of this function, and the kinetic energy. */
