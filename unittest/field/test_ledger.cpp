@@ -131,8 +131,8 @@ TEST(Force, WorkIsForceTimesPath)
   EXPECT_NEAR(e[RESIDUAL], 0.0, 1e-12 * expected);
 }
 
-// Water that is put under its weight swings in steps that vary with its compression: the work is the
-// weight times the way of its mass, but for the half of a step at both ends. With forces along half
+// Water that is put under its weight swings in steps that vary with its compression: the work is
+// the weight times the way of its mass, but for the half of a step at both ends. With forces along half
 // of the changes of velocities it was -1.8 for 6.5 J, and an alarm was raised.
 TEST(Force, WorkInStepsThatVary)
 {

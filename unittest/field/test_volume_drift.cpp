@@ -163,7 +163,7 @@ TEST(FullBox, LargeDifferencesAreTold)
   EXPECT_THAT(log_of(run, "run 400\n"), HasSubstr("volumes and places have drifted apart"));
 }
 
-// A layer of a cell has no nodes inside: those behind the floor, which hardly reach it, do not count
+// A layer of a cell has no nodes inside: those behind the floor, which hardly reach it, are none
 TEST(Layer, IsTooThinToTell)
 {
   for (const char *depth : {"0.1", "0.15"}) {

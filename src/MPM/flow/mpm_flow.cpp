@@ -48,7 +48,7 @@ static constexpr double FLIP_OF_BODIES = 0.98;
 // remains of flow in a fluid at rest, and fluid that falls or splashes, have 0.2 to 3
 static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
 // nothing is kept where numerical errors add energy, either: shares of the largest kinetic energy,
-// above which this is so, also with solids, where the energy of waves of 8 cells varies by 12 %, and
+// above which this is so, with solids, too, where energies of waves of 8 cells vary by 12 %, and
 // which are worth a warning
 static constexpr double GAIN = 0.03, GAIN_OF_SOLIDS = 0.15, MUCH_GAIN = 0.1;
 // passes that fit the gradients of velocities with which points begin, at most, and their change of

@@ -151,7 +151,8 @@ void MPMEnergyWatch::note(int field, int i, int turns)
 
 /** Work of forces from the middle of the step before to that of this one, where their velocities
  *  belong, see MPMLedger::work_on_points(). Points' own velocities would not do for the way: those
- *  of flip and aflip differ from what moves points. Forces that elements have added are internal. */
+ *  of flip and aflip differ from what moves points. Forces that elements have added are
+ *  internal. */
 void MPMEnergyWatch::moved()
 {
   const double half = 0.5 * fields[0]->step_dt(), half_before = 0.5 * fields[0]->step_dt_before();
