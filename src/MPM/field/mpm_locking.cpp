@@ -15,6 +15,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_strain.h"
+#include "force.h"
 
 #include <algorithm>
 #include <cmath>
@@ -133,8 +134,11 @@ void MPMLocking::average_pressure()
     V = atom->vfrac[i] * J;
   });
 
+  unseen = 0.0;
   each_point(field, [&](const MPMPointMap::Run &, bigint i) {
-    const double more = volume[i] / atom->vfrac[i] * pressure[3 * i] - mean(own[i]);
+    const double J = volume[i] / atom->vfrac[i], more = J * pressure[3 * i] - mean(own[i]);
     for (int c = 0; c < 6; c++) tau[6 * i + c] = own[i][c] + (c < 3 ? more : 0.0);
+    if (J > 0.0) unseen -= 0.5 * atom->vfrac[i] * more * std::log(J);
   });
+  unseen /= force->nktv2p;
 }

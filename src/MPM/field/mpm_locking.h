@@ -28,6 +28,11 @@ class MPMLocking : protected Pointers {
   void average_pressure();
   /** Kirchhoff stress with averaged pressure, [n][6]. */
   double *stress() { return tau.data(); }
+  /** Elastic energy of points that these forces do not give back, which is that of the pressure
+   *  they have left out, p - S p: V p (p - S p) / 2K at a point, with ln J for p/K. S keeps the sum
+   *  of V p, so that a strain without stress, such as that of heat, does not count. This rank's
+   *  share, as of the last average [energy]. */
+  double unseen_energy() const { return unseen; }
 
   double memory_usage() const { return (gradients.capacity() + tau.capacity()) * sizeof(double); }
 
@@ -35,6 +40,7 @@ class MPMLocking : protected Pointers {
   MPMField &field;
   double *J = nullptr;    // [n] volume ratio by the motion of the point alone, 0: not yet known
   std::vector<double> gradients, tau;
+  double unseen = 0.0;
 
   template <class Value> void average_around_points(const Value &);
 };

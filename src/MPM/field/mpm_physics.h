@@ -79,6 +79,7 @@ class MPMPhysics {
     /** The energy exchanged between the motion and this physics is part of the entry of time
      *  integration: the residual closes without this entry. */
     bool in_integration = false;
+    bool heat = false;    ///< is what bodies have now heat, which no motion can have given?
   };
   virtual std::vector<Account> accounts() const { return {}; }
   virtual void account(double * /*values*/) const {}    ///< adds to values

@@ -369,7 +369,7 @@ void FixMPMHeat::add_stages(MPMPlan &plan, MPMPlan::Place place)
  *  that nodes were given. */
 std::vector<MPMPhysics::Account> FixMPMHeat::accounts() const
 {
-  return {{"conducted heat", true},
+  return {{"conducted heat", true, false, true},
           {"heat through faces", false},
           {"heat of sources", false},
           {"heat of friction", false},

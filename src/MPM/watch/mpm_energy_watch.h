@@ -59,6 +59,7 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   struct Sums {
     double points, met, mass;    // met: points that pair styles may act on
     double kinetic, stored, spent;
+    double heat;       // part of the stored energy, in the accounts of physics
     double elastic;    // part of the stored energy that is not heat: in the stress of points
     double work;       // done on the points, less the energy of deleted points
     /** Energy that work does not explain, up to a constant. */
@@ -96,13 +97,14 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
     bigint steps;
     double force_work;    // of forces on points, this rank's share
     Sums start;
-    double lowest;     // least energy so far that work does not explain
-    double in_play;    // largest energy so far
-    double gained;     // unexplained energy above the lowest
-    Sums last;         // of the last check
-    double elastic;    // at the start of the step that has noted it
-    bigint noted;      // steps done by then, plus 1; 0: none
-    bool warned;       // has a warning of gained energy been printed?
+    double lowest;        // least energy so far that work does not explain
+    double in_play;       // largest energy so far
+    double mechanical;    // the same without heat
+    double gained;        // unexplained energy above the lowest
+    Sums last;            // of the last check
+    double elastic;       // at the start of the step that has noted it
+    bigint noted;         // steps done by then, plus 1; 0: none
+    bool warned;          // has a warning of gained energy been printed?
     bool warned_of_loss;
   } run = {};
 
@@ -119,6 +121,7 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   Sums sums() const;
   bool strain_follows() const;
   bool is_last_step() const;
+  double energy_at_hand() const;
   bool is_round_off(double energy) const;
   void center_start();
   void begin(const Sums &);
