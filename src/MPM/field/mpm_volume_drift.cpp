@@ -154,8 +154,32 @@ double MPMVolumeDrift::part_in_box(int64_t node) const
   return product;
 }
 
+/** Length of the circle around an axis of symmetry on which the part in the box of the function of a
+ *  node is, in the mean. */
+double MPMVolumeDrift::mean_circle(int64_t node) const
+{
+  constexpr double REACH = 2.0;    // of the widest function
+  constexpr int SLICES = 40;
+  int index[3];
+  field.grid.node_index(node, index);
+  const auto &lattice = field.lattice;
+  const MPMFrame &frame = *field.frame;
+  const double radius = lattice.origin[0] / lattice.h + index[0];    // in node spacings
+  if (radius >= REACH) return frame.circle(radius * lattice.h);
+  double sum = 0.0, moment = 0.0;
+  for (int k = 0; k < SLICES; k++) {
+    const double from = -REACH + 2.0 * REACH * k / SLICES, to = from + 2.0 * REACH / SLICES,
+                 middle = radius + 0.5 * (from + to);
+    if (middle < 0.0) continue;
+    const double share = integral(field.options.shape, to) - integral(field.options.shape, from);
+    sum += share;
+    moment += share * middle;
+  }
+  return sum > 0.0 ? frame.circle(moment / sum * lattice.h) : 0.0;
+}
+
 /** Sums at nodes over the points with a material: work.nodes <- sum N V q and, in the fourth place,
- *  sum N V, of the vectors q and the weights V. */
+ *  sum N V, of the vectors q, which have two components in 2d, and the weights V. */
 void MPMVolumeDrift::sum_at_nodes()
 {
   auto &work = field.work;
@@ -182,20 +206,30 @@ void MPMVolumeDrift::interpolate()
 }
 
 /** Fillings, and in work.nodes the mean velocities of the points around. With an axis of symmetry,
- *  volumes are areas in the plane. */
+ *  volumes are areas in the plane, of which sums of regular arrays are exact. Rings that have come
+ *  to the axis have areas without bounds there, and volumes tell. */
 void MPMVolumeDrift::find_filling()
 {
   auto &work = field.work;
   const MPMFrame &frame = *field.frame;
   const MPMRows places = frame.places();
+  const bool axis = field.options.axisymmetric;
   work.vectors.resize(3 * (std::size_t) atom->nmax);
   work.weights.resize(std::max(work.weights.size(), (std::size_t) atom->nmax));
   each_point(field, [&](const MPMPointMap::Run &, int i) {
     work.weights[i] = atom->vfrac[i] * field.points->jacobian(i) / frame.circle(places[i][0]);
+    if (axis) work.vectors[3 * (std::size_t) i] = frame.circle(places[i][0]);
+  });
+  const int NREAL = field.pic.nreal;
+  if (axis) {
+    sum_at_nodes();
+    circles.resize(field.grid.nnodes());
+    for (std::size_t n = 0; n < circles.size(); n++) circles[n] = work.nodes[NREAL * n];
+  }
+  each_point(field, [&](const MPMPointMap::Run &, int i) {
     std::copy_n(atom->v[i], 3, &work.vectors[3 * (std::size_t) i]);
   });
   sum_at_nodes();
-  const int NREAL = field.pic.nreal;
   const double cell = field.lattice.cell_volume();
   fill.assign(field.grid.nnodes(), 0.0);
   part.resize(fill.size());
@@ -204,6 +238,12 @@ void MPMVolumeDrift::find_filling()
     if (!(record[3] > 0.0)) continue;
     part[n] = part_in_box((int64_t) n);
     if (part[n] > 0.0) fill[n] = record[3] / (cell * part[n]);
+    if (axis && part[n] > 0.0) {
+      const double circle = mean_circle((int64_t) n),
+                   by_volume = circles[n] / (cell * part[n] * circle);
+      if (std::fabs(by_volume - 1.0) < std::fabs(fill[n] - 1.0)) fill[n] = by_volume;
+      circles[n] = circle;
+    }
     for (int d = 0; d < 3; d++) record[d] /= record[3];
   }
 }
@@ -277,11 +317,12 @@ void MPMVolumeDrift::find_inside()
     const double excess = fill[n] - 1.0;
     const bool is_inside = record[3] > 0.0 && record[0] < HARDLY * record[3];
     if (is_inside && field.grid.owns((int64_t) n)) {
+      const double room = circles.empty() ? part[n] : part[n] * circles[n];
       mine[0] += 1.0;
       mine[4] += part[n] > LITTLE;
-      mine[1] += part[n];
-      mine[2] += part[n] * excess;
-      mine[3] += part[n] * excess * excess;
+      mine[1] += room;
+      mine[2] += room * excess;
+      mine[3] += room * excess * excess;
     }
     record[0] = is_inside ? part[n] * excess : 0.0;
     record[2] = is_inside ? 0.0 : 1.0;
@@ -295,15 +336,21 @@ void MPMVolumeDrift::find_inside()
 }
 
 /** Mean difference of the pressures of points of gases from the means around them, relative to
- *  these. Of points all of whose nodes are inside; each counts by its volume. */
+ *  these. Of points all of whose nodes are inside, which another interpolation tells, as vectors have
+ *  two components in 2d; each counts by its volume. */
 void MPMVolumeDrift::find_spread()
 {
+  for (std::size_t n = 0; n < fill.size(); n++) {
+    double *const record = &field.work.nodes[field.pic.nreal * n];
+    record[0] = record[2];
+  }
+  interpolate();
   double mine[2] = {0.0}, all[2];
   for (const auto &run : field.map->runs) {
     if (!gases.count(run.material)) continue;
     for (int i = run.first; i < run.last; i++) {
       const double *const q = &field.work.vectors[3 * (std::size_t) i];
-      if (q[2] > HARDLY) continue;
+      if (q[0] > HARDLY) continue;
       const double *const tau = field.points->tau[i];
       const double J = field.points->jacobian(i), V = field.work.weights[i];
       mine[0] += V * std::fabs((tau[0] + tau[1] + tau[2]) / (3.0 * J) + q[1]);
@@ -368,10 +415,12 @@ void MPMVolumeDrift::step()
   if (now) find_strain();
   mark_points_at_surfaces();
   find_inside();
-  if (now || !gases.empty()) interpolate();
+  if (now) {
+    interpolate();
+    find_rates();
+  }
   if (!gases.empty()) find_spread();
   note(every);
-  if (now) find_rates();
 }
 
 /** Without corrections, rates of a run before must not wait for the next run that has some. */

@@ -48,7 +48,7 @@ class MPMVolumeDrift : protected Pointers {
   /** A line for the summary of the run; empty if the field has no nodes inside of bodies. */
   std::string report() const;
 
-  double memory_usage() const { return bytes_of(fill, part, change); }
+  double memory_usage() const { return bytes_of(fill, part, circles, change); }
 
  private:
   MPMField &field;
@@ -64,14 +64,16 @@ class MPMVolumeDrift : protected Pointers {
     bool warned = false;
   } gas;
   std::set<const FixMPMMaterial *> gases;
-  std::vector<double> fill;      // [node] filling
-  std::vector<double> part;      // [node] share of its function that is in the box
-  std::vector<double> change;    // [n] strain since the last look
+  std::vector<double> fill;       // [node] filling
+  std::vector<double> part;       // [node] share of its function that is in the box
+  std::vector<double> circles;    // [node] of mean_circle(); empty: no axis of symmetry
+  std::vector<double> change;     // [n] strain since the last look
   std::map<const FixMPMMaterial *, double> stiffness;    // at rest, of liquids [pressure]
 
   int looks_every() const;    // 0: never
   double part_along(int axis, int node) const;
   double part_in_box(int64_t node) const;
+  double mean_circle(int64_t node) const;
   void sum_at_nodes();
   void interpolate();
   void find_filling();
