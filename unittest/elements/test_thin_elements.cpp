@@ -514,8 +514,8 @@ SERIAL_TEST(Airbag, Balloons)
   }
 }
 
-// a cube of quadrangles, or of triangles: volume, area, and the pressure on its sides, of which each
-// corner has three quarters together
+// a cube of quadrangles, or of triangles: volume, area, and the pressure on its sides, of which
+// each corner has three quarters together
 SERIAL_TEST(Airbag, CubeOfQuadrangles)
 {
   const double a = 0.1, p = 50.0;

@@ -647,7 +647,8 @@ TEST(Anisotropic, Woven)
 }
 
 // with yarns that hardly bear anything, which were at 60 or 120 degrees and are at right angles,
-// waves have the modulus of shear and the moment between the yarns; the bound of their speed has both
+// waves have the modulus of shear and the moment between the yarns; the bound of their speed has
+// both
 TEST(Anisotropic, WovenWithSoftYarns)
 {
   for (const double degrees : {60.0, 120.0}) {

@@ -75,8 +75,8 @@ SERIAL_TEST(Geostatic, SoilsAndUnits)
 }
 
 // a crust that is no thicker than a cell, and whose K0 is below the active one, yields at the same
-// mean stress, as sand without dilation does. The warning has the number of its points on all ranks,
-// and the largest change of their stress
+// mean stress, as sand without dilation does. The warning has the number of its points on all
+// ranks, and the largest change of their stress
 TEST(Geostatic, CrustBeyondYieldIsTold)
 {
   const int n = 8;

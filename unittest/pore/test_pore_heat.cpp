@@ -93,8 +93,8 @@ static std::string leaking(bool heat, double a)
       "fix b dry mpm/material density 2000 linear 1e7 0.3\ntimestep 1e-6\nrun 1\n";
 }
 
-// nodes of a thin wall belong to both soils, those a tenth of a cell inside of a thick one to a soil
-// on one side
+// nodes of a thin wall belong to both soils, those a tenth of a cell inside of a thick one to a
+// soil on one side
 TEST(Wall, LeaksAreTold)
 {
   for (const bool heat : {false, true}) {

@@ -124,7 +124,8 @@ TEST(SplineMultigrid, IsSymmetric)
   }
 }
 
-// Constraints that differ from none by round-off alone: what they make of coarse levels is the same.
+// Constraints that differ from none by round-off alone: what they make of coarse levels is the
+// same.
 TEST(SplineMultigrid, ConstraintsThatHoldNothing)
 {
   for (const int dim : {2, 3}) {

@@ -425,8 +425,8 @@ PARAMETER_TEST(EnergyWatchLoads, WorkIsThatOfTheLedger, LoadOnABar, ValuesIn(loa
   }
 }
 
-// a bar that is pressed to four fifths of its length, and then stands on dashpots, which hold it with
-// that force, and is pushed on: the watch knows the work of the force that holds it
+// a bar that is pressed to four fifths of its length, and then stands on dashpots, which hold it
+// with that force, and is pushed on: the watch knows the work of the force that holds it
 TEST(EnergyWatch, KnowsTheWorkOfSupports)
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
@@ -459,8 +459,9 @@ TEST(EnergyWatch, KnowsTheWorkOfSupports)
   }
 }
 
-// a standing wave of 100 steps in a period: whichever step of it a run begins with, its summary says
-// that next to nothing was taken or added, while half a step changes the stored energy by up to 3 %
+// a standing wave of 100 steps in a period: whichever step of it a run begins with, its summary
+// says that next to nothing was taken or added, while half a step changes the stored energy by up
+// to 3 %
 TEST(EnergyWatch, RunsBeginAnywhereInAVibration)
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
