@@ -164,13 +164,19 @@ TEST(Relax, AnyNumberOfRanks)
   }
 }
 
-// a body that reaches beyond the box ends there
+// a body that reaches beyond the box ends there, at a face of sites or within sites
 TEST(Relax, OutsideIgnored)
 {
   Scene run(plane("lj", "f f", "-1.03 3 0.013 3") + "region body sphere 0 0 0 1\n" +
             relaxed(0.1, 10, "outside ignore"));
   EXPECT_NEAR(Sum(run).volume, 0.5 * PI - 2.0 * 0.013, 0.001);
   for (const auto &p : run.gather()) EXPECT_GT(p.x[1], 0.013);
+  const double end = 0.563;    // beyond the centers of sites
+  Scene other(plane("lj", "f f", strprintf("-2 2 -2 %g", end)) + "region body sphere 0 0 0 1\n" +
+              relaxed(0.1, 10, "outside ignore"));
+  EXPECT_NEAR(measured("area", Sum(other).volume),
+              0.5 * PI + end * std::sqrt(1.0 - end * end) + std::asin(end), 0.003);
+  for (const auto &p : other.gather()) EXPECT_LT(p.x[1], end);
 }
 
 TEST(Relax, RefusesMistakes)

@@ -147,6 +147,33 @@ SERIAL_TEST(Sheets, NearNodesDoNotTouch)
   }
 }
 
+// two layers that approach, part, or part so fast that damping would hold them together: the force
+// on each node above another one, and the power that damping takes
+SERIAL_TEST(Sheets, DampingActsAgainstApproach)
+{
+  const double k = 40.0, c = 10.0, distance = 0.045, gap = 0.03, elastic = k * (distance - gap);
+  ScratchFile file("strip.msh", folded(2, 4, 2, 0.1, gap));
+  for (const double v : {-0.02, 0.02, 0.1}) {
+    Scene run(free_body(3, -0.6, 0.6, 0.02, file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+              strprintf("pair_style mpm/sheet %g\npair_coeff * * %g damping %g\n", distance, k, c) +
+              "comm_modify vel yes\ngroup upper id > 15\n" +
+              strprintf("velocity upper set 0 0 %g\n", v) +
+              "compute touch all pair mpm/sheet\nthermo_style custom step c_touch[1] c_touch[2]\n"
+              "timestep 1e-5\nrun 0\n");
+    const double force = std::max(0.0, elastic - c * v);
+    int touching = 0;
+    for (int i = 0; i < run.n(); i++) {
+      const double *const f = run.lmp->atom->f[i];
+      const bool upper = run.x()[i][2] > 0.5 * gap, fold = run.x()[i][0] > 0.35;
+      touching += upper && !fold;
+      EXPECT_NEAR(f[2], fold ? 0.0 : (upper ? force : -force), 1e-12 * elastic);
+      for (int d = 0; d < 2; d++) EXPECT_NEAR(f[d], 0.0, 1e-12 * elastic);
+    }
+    EXPECT_EQ(run.evaluate("c_touch[1]"), touching);
+    EXPECT_NEAR(run.evaluate("c_touch[2]") / (touching * (elastic - force) * v), 1.0, 1e-12);
+  }
+}
+
 // V4: a bag between two plates, of lines that hardly stretch, with a gas of 1.1e5 against 1e5
 // outside: the force on a plate at half of the height, with constant temperature or entropy
 SERIAL_TEST(Sheets, BagBetweenPlates)

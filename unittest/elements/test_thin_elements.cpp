@@ -514,6 +514,43 @@ SERIAL_TEST(Airbag, Balloons)
   }
 }
 
+// a cube of quadrangles, or of triangles: volume, area, and the pressure on its sides, of which
+// each corner has three quarters together
+SERIAL_TEST(Airbag, CubeOfQuadrangles)
+{
+  const double a = 0.1, p = 50.0;
+  const std::vector<Node> x = {{0, 0, 0}, {a, 0, 0}, {a, a, 0}, {0, a, 0},
+                               {0, 0, a}, {a, 0, a}, {a, a, a}, {0, a, a}};
+  const std::vector<std::vector<int>> sides = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                               {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  for (const bool triangles : {false, true}) {
+    std::vector<std::vector<int>> faces = sides;
+    if (triangles) {
+      faces.clear();
+      for (const auto &f : sides) {
+        faces.push_back({f[0], f[1], f[2]});
+        faces.push_back({f[0], f[2], f[3]});
+      }
+    }
+    ScratchFile file("cube.msh", gmsh(triangles ? 2 : 3, x, faces));
+    Scene run(box(3, -0.3, 0.3, 0.05, "") +
+              thin_body(file.name, "thickness 0.001", "neohookean 1e5 0.3") +
+              strprintf("fix b all mpm/airbag e gas %g 1.4 outside 1000\ntimestep 1e-6\nrun 0\n",
+                        1000.0 + p));
+    EXPECT_NEAR(run.fix("b")->compute_vector(1) / (a * a * a), 1.0, 1e-12);
+    EXPECT_NEAR(run.fix("b")->compute_vector(2) / (6.0 * a * a), 1.0, 1e-12);
+    double sum = 0.0;    // away from the middle of each axis
+    for (int i = 0; i < run.n(); i++)
+      for (int d = 0; d < 3; d++) {
+        const double f = run.fix<FixMPMElements>("e")->forces()[3 * i + d],
+                     out = run.x()[i][d] > 0.5 * a ? f : -f;
+        if (!triangles) EXPECT_NEAR(out / (0.25 * p * a * a), 1.0, 1e-12);
+        sum += out;
+      }
+    EXPECT_NEAR(sum / (6.0 * p * a * a), 1.0, 1e-12);
+  }
+}
+
 // a balloon of 512 triangles that stand for the curved surface through their nodes (V1, gas of 3000
 // Pa and nothing outside): at rest, the pressure of a neohookean balloon of the stretch that it
 // has, for which that of the triangles alone is 1 % off; set free it keeps its energy

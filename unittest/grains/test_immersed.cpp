@@ -174,6 +174,26 @@ SERIAL_TEST(Immersed, SinksWithTheTerminalVelocity)
   }
 }
 
+// With every 10, drag acts once in ten steps, and its law has the mean velocity of these: a light
+// grain, which relaxes within them, sinks as fast as with every 1
+SERIAL_TEST(Immersed, SinksAsFastWithEvery)
+{
+  double speed[2];
+  for (const int every : {1, 10}) {
+    Scene run(head("0 4 0 4 0 4", "p p p", strprintf("transfer apic every %d", every)) +
+              "create_points 1 box ppc 2\ncreate_atoms 2 single 2.1 2.2 2.3\n"
+              "set type 2 diameter 0.2 density 3.0\n" +
+              rest("1.0 drag stokes gravity 0 0 -1", "eos tait 500.0 7 viscosity newtonian 1.0") +
+              "fix move grains nve/sphere\nfix g grains gravity 1.0 vector 0 0 -1\n" +
+              strprintf("timestep %.17g\nrun %d\n", 0.01 / every, 40 * every));
+    const double start = run.evaluate("xcm(grains,z)");
+    run.commands(strprintf("run %d\n", 20 * every));
+    speed[every > 1] = measured(strprintf("every %d: speed", every),
+                                (start - run.evaluate("xcm(grains,z)")) / 0.2);
+  }
+  EXPECT_NEAR(measured("of that with every 1", speed[1] / speed[0]), 1.0, 1e-3);
+}
+
 SERIAL_TEST(Immersed, TellsOfTheOrderOfFixes)
 {
   const std::string move = "group grains type 2\nfix move grains nve/sphere\n",

@@ -645,3 +645,20 @@ TEST(Anisotropic, Woven)
     }
   }
 }
+
+// with yarns that hardly bear anything, which were at 60 or 120 degrees and are at right angles,
+// waves have the modulus of shear and the moment between the yarns; the bound of their speed has
+// both
+TEST(Anisotropic, WovenWithSoftYarns)
+{
+  for (const double degrees : {60.0, 120.0}) {
+    const auto material = material_of(joined("woven 1e3 1e3 1e7 angle ", degrees));
+    MaterialPoint p(*material);
+    const double angle = degrees * M_PI / 180.0, moment = 1e7 * std::fabs(0.5 * M_PI - angle);
+    move_to(p, {1.0, -std::cos(angle) / std::sin(angle), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+    const double exact = fastest_wave(p);
+    EXPECT_NEAR(exact * exact * p.density() / (1e7 + moment), 1.0, 0.01);
+    EXPECT_GT(p.wave_speed(), exact * (1.0 - 1e-5));
+    EXPECT_LT(p.wave_speed(), exact * 1.5);
+  }
+}

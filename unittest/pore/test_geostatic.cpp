@@ -74,6 +74,47 @@ SERIAL_TEST(Geostatic, SoilsAndUnits)
   }
 }
 
+// a crust that is no thicker than a cell, and whose K0 is below the active one, yields at the same
+// mean stress, as sand without dilation does. The warning has the number of its points on all
+// ranks, and the largest change of their stress
+TEST(Geostatic, CrustBeyondYieldIsTold)
+{
+  const int n = 8;
+  const double K0 = 0.55, active = std::pow(std::tan(0.25 * PI - 7.5 * PI / 180.0), 2.0);
+  const auto scene = [&](double friction, int rows) {
+    return replaced(
+               ground(3, n, "mohr/coulomb 1e7 0.3 35 0", 0.0), "fix m all",
+               strprintf("region high block INF INF INF INF %.17g INF\ngroup crust region high\n"
+                         "group rest subtract all crust\n"
+                         "fix c crust mpm/material density %g mohr/coulomb 1e7 0.3 %g 0\n"
+                         "fix m rest",
+                         1.0 - 0.5 * rows / n, DENSITY, friction)) +
+        strprintf("mpm_geostatic grid %g\nrun 0\n", K0);
+  };
+  Scene firm(scene(35.0, 2)), run;
+  const auto log = log_of(run, scene(15.0, 2));
+  const auto before = firm.gather(), after = run.gather();
+  double points = 0.0, most = 0.0, of_same_mean = 0.0;
+  for (std::size_t k = 0; k < after.size(); k++) {
+    const double *const is = after[k].stress, *const was = before[k].stress;
+    const bool crust = after[k].x[2] > 1.0 - 1.0 / n;
+    points += crust;
+    for (int d = 0; d < 3; d++) {
+      if (d < 2) EXPECT_NEAR(is[d] / is[2], crust ? active : K0, 1e-9);
+      grow(most, (is[d] - was[d]) * n / (DENSITY * G));
+    }
+    const double yields = 1.0 - (1.0 + 2.0 * K0) / (1.0 + 2.0 * active);
+    if (crust) grow(of_same_mean, yields * was[2] * n / (DENSITY * G));
+  }
+  EXPECT_NEAR(measured("change over the weight of a cell", most) / of_same_mean, 1.0, 1e-6);
+  if (rank() == 0)
+    EXPECT_THAT(log,
+                HasSubstr(strprintf("stress of %.0f points next to the surface is beyond yield, by "
+                                    "up to %.3g times the weight of a cell",
+                                    points, most)));
+  if (nranks() == 1) expect_error(scene(15.0, 3), "law of fix mpm/material c does not keep");
+}
+
 // LAMMPS evaluates the variables of fix gravity in a run, which is later
 SERIAL_TEST(Geostatic, GravityByAVariable)
 {

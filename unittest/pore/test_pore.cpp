@@ -527,6 +527,36 @@ SERIAL_TEST(Units, Metal)
               0.0, 1e-11);
 }
 
+// with a density that is the same mass times velocity squared per volume, all numbers are those of
+// other units: of a wave, and of pressures that alternate from point to point, which relax
+SERIAL_TEST(Units, NumbersAreThoseOfOtherUnits)
+{
+  std::vector<double> of[2];
+  for (const bool metal : {false, true}) {
+    const double unit = metal ? 1.0364269e-4 * 1.6021765e6 : 1.0;
+    Scene run(plane(metal ? "metal" : "si", "p f", "0 20 0 100 -2.5 2.5", 1, 1.5) +
+              "create_points 1 box spacing 2.5\nfix grid all mpm 5.0\n" +
+              strprintf("fix m all mpm/material density %.17g linear 1e5 0.2\n", 2.0 / unit) +
+              "fix floor all mpm/boundary ylo yhi slip\nvariable p atom 100*sin(2*PI*y/5)\n" +
+              strprintf("fix water all mpm/pore 2e5 %.17g 1.0 soil m 0.4 constant 1e-3 every 1 "
+                        "initial v_p\ntimestep 2e-3\n",
+                        1.0 / unit));
+    run.set_velocity([](const double *x, double *v) {
+      v[1] = 1e-3 * std::sin(PI * x[1] / 100.0);
+    });
+    Water water(run);
+    run.commands("run 12\n");
+    of[metal].assign(water.pressures(), water.pressures() + run.n());
+  }
+  double size = 0.0, most = 0.0;
+  for (std::size_t i = 0; i < of[0].size(); i++) {
+    grow(size, of[0][i]);
+    grow(most, of[1][i] - of[0][i]);
+  }
+  EXPECT_NEAR(measured("what remains of 100", size), 50.0, 30.0);
+  EXPECT_LT(measured("difference", most / size), 1e-11);
+}
+
 // friction by effective stress in these units and in 3d, with a floor in a plane of nodes or not
 SERIAL_TEST(Units, FrictionInMetal)
 {

@@ -11,6 +11,7 @@
 #include "pore/pore_testing.h"
 
 #include "error.h"
+#include "field/mpm_forces.h"
 #include "mesh/stl_testing.h"
 
 using namespace MPM_TEST;
@@ -265,6 +266,40 @@ SERIAL_TEST(Plate, FrictionIsThatOfGrains)
   EXPECT_NEAR(measured("drained",
                        friction("2.2e7 1000 9810 soil m 0.4 constant 1e-9 free pressure 0", 0.25)),
               1.0, 1e-10);
+}
+
+// the forces from which a body takes the share of water in what presses it have, with the places of
+// nodes, the moments of all components of the stress of points
+SERIAL_TEST(Plate, ForcesBelowItAreOfTheWholeStress)
+{
+  const double p = 50.0, stress[6] = {11.0, -7.0, 5.0, 3.0, -13.0, 17.0};
+  const int axes[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  Scene run(space("si", "f f f", "0 1 0 1 0 1", 1, 0.03) +
+            "region body block 0.2 0.7 0.3 0.7 0.3 0.8\nfix grid all mpm 0.1\n"
+            "create_points 1 region body spacing 0.05\n"
+            "fix m all mpm/material density 1990 linear 1e7 0.3\n" +
+            strprintf("variable p atom %g\n", p) +
+            "fix water all mpm/pore 2.2e7 1000 9810 soil m 0.4 constant 1e-9 initial v_p\n"
+            "timestep 1e-9\nrun 1\n");
+  for (int i = 0; i < run.n(); i++) std::copy_n(stress, 6, run.points().tau[i]);
+  MPMField *const field = MPMField::all(run.lmp)[0];
+  const std::vector<char> near(field->grid.blocks.size(), 1);
+  std::vector<double> of[2];
+  dynamic_cast<MPMPorePressure *>(run.fix("water"))
+      ->find_forces_below_surface(*field, near, of[0], of[1]);
+  for (const bool all : {false, true})
+    for (int c = 0; c < 6; c++)
+      for (const bool turned : {false, true}) {
+        const int d = axes[c][turned], e = axes[c][!turned];
+        double moment = 0.0;
+        for (int64_t node = 0; node < field->grid.nnodes(); node++) {
+          double x[3];
+          field->grid.node_position(node, x);
+          moment -= of[all][3 * node + d] * x[e];
+        }
+        EXPECT_NEAR(moment / (0.5 * 0.4 * 0.5), (all ? stress[c] : 0.0) - (c < 3 ? p : 0.0), 1e-9)
+            << all << c;
+      }
 }
 
 // consolidation under a plate that lets water through, or one that does not, on a floor that does

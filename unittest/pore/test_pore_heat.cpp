@@ -93,15 +93,18 @@ static std::string leaking(bool heat, double a)
       "fix b dry mpm/material density 2000 linear 1e7 0.3\ntimestep 1e-6\nrun 1\n";
 }
 
-// nodes of a thin wall belong to both soils
+// nodes of a thin wall belong to both soils, those a tenth of a cell inside of a thick one to a
+// soil on one side
 TEST(Wall, LeaksAreTold)
 {
-  for (const bool heat : {false, true})
+  for (const bool heat : {false, true}) {
+    const std::string words = heat ? "so thin that heat leaks through it"
+                                   : "so thin that water leaks through it";
     for (const double cells : {1.0, 2.0, 3.0})
-      EXPECT_EQ(times_said(leaking(heat, 0.05 * cells),
-                           heat ? "so thin that heat leaks through it"
-                                : "so thin that water leaks through it"),
-                cells < 3.0 ? 1 : 0);
+      EXPECT_EQ(times_said(leaking(heat, 0.05 * cells), words), cells < 3.0 ? 1 : 0);
+    EXPECT_EQ(times_said(replaced(leaking(heat, 0.2), "mpm 0.1", "mpm 0.1 origin 0.01 0"), words),
+              0);
+  }
 }
 
 // and where they are: the only plane of nodes in this wall is in its middle, and the first of them at 0

@@ -187,6 +187,35 @@ SERIAL_TEST(Faces, HaveAllOfTheirArea)
       }
 }
 
+// A face of given temperature where points next to a part of it do not conduct, far from the finer
+// lattice: in one step, the points there get the heat that they get on one lattice
+SERIAL_TEST(Faces, WithPointsThatDoNotConduct)
+{
+  std::map<std::pair<int, int>, double> before;
+  double most = 0.0, hottest = 0.0;
+  for (const bool two : {false, true}) {
+    Scene run(
+        plane("lj", "f f", "0 14 0 6", 2, 0.2) +
+        (two ? lattices(2, "quadratic", "", {"block 0 14 0 6 INF INF", "block 9 14 0 6 INF INF"})
+             : "fix F all mpm 1.0\ncreate_points 1 box ppc 2\n") +
+        "region dry block INF 0.6 2 4 INF INF\ngroup dry region dry\n"
+        "group rest subtract all dry\nfix d dry mpm/material density 1 eos linear 1e-6\n" +
+        replaced(solid, "fix m all", "fix m rest") +
+        "fix heat all mpm/heat xlo temperature 1\ntimestep 0.02\nrun 1\n");
+    Warm warm(run);
+    for (int i = 0; i < run.n(); i++) {
+      const double *const x = run.x()[i];
+      if (!warm.has(i) || x[0] > 5.0) continue;
+      double &other = before[{std::lround(4.0 * x[0]), std::lround(4.0 * x[1])}];
+      if (two) grow(most, warm.T(i) - other);
+      other = warm.T(i);
+      grow(hottest, other);
+    }
+  }
+  EXPECT_GT(hottest, 0.01);
+  EXPECT_LT(measured("difference", most / hottest), 1e-11);
+}
+
 // A slab between convection and cold: the profile and the flow are those of the two in series
 SERIAL_TEST(Faces, ConvectionInSeries)
 {

@@ -459,6 +459,66 @@ PARAMETER_TEST(EnergyWatchLoads, WorkIsThatOfTheLedger, LoadOnABar, ValuesIn(loa
   }
 }
 
+// a bar that is pressed to four fifths of its length, and then stands on dashpots, which hold it
+// with that force, and is pushed on: the watch knows the work of the force that holds it
+TEST(EnergyWatch, KnowsTheWorkOfSupports)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  for (const std::string frame : {"updated", "total"}) {
+    Scene run(plane("si", "f f", "0 2 0 0.4", 1, 0.03) + "fix grid all mpm 0.1 frame " + frame +
+              " transfer flip 1.0 gain warn 100\nregion bar block 0 1 0 0.4 INF INF\n"
+              "create_points 1 region bar ppc 2\n"
+              "fix m all mpm/material density 1000 neohookean 1.0e6 0.3\n"
+              "fix walls all mpm/boundary xlo ylo yhi slip\nregion end plane 1 0 0 -1 0 0\n"
+              "fix press all mpm/traction region end traction -3e5 0 0\ntimestep 2e-4\n"
+              "fix rest all mpm/relax 1e-4\nrun 2000\nunfix rest\nunfix press\n");
+    double last = 0.0;
+    for (int i = 0; i < run.n(); i++) last = std::max(last, run.x()[i][0]);
+    const double end = last + 0.02;    // half the room of a point
+    EXPECT_NEAR(measured(frame + ": end of the bar", end), 0.8, 0.05);
+    const ScratchFile file("log");
+    run.commands(strprintf("region face plane %.17g 0 0 -1 0 0\n", end) +
+                 "fix far all mpm/dashpot region face 36 19\ncompute e all mpm/energy\n"
+                 "variable F equal 50*(1-exp(-elapsed/50))\nfix push all addforce v_F 0 0\n"
+                 "thermo_style custom step c_e\nlog " +
+                 file.name + "\nrun 300\nlog none\n");
+    const double *const e = run.compute_vector();
+    const double added = added_by(file_text(file.name)), force = run.fix_vector("far", 4)[3];
+    double now = 0.0;
+    for (int i = 0; i < run.n(); i++) now = std::max(now, run.x()[i][0]);
+    const double work = std::fabs(force * (now - last));
+    EXPECT_GT(measured(frame + ": work of the support", work), 1000.0);
+    EXPECT_NEAR(measured(frame + ": watch less ledger", (added - e[8] - e[9]) / work), 0.0,
+                frame == "total" ? 0.003 : 0.007);
+  }
+}
+
+// a standing wave of 100 steps in a period: whichever step of it a run begins with, its summary
+// says that next to nothing was taken or added, while half a step changes the stored energy by up
+// to 3 %
+TEST(EnergyWatch, RunsBeginAnywhereInAVibration)
+{
+  if (nranks() > 1) GTEST_SKIP() << "one rank is enough";
+  const std::regex energy("friction took ([-+.e0-9]+) .*numerical errors added ([-+.e0-9]+)");
+  for (int before = 0; before < 48; before += 6) {
+    const ScratchFile file("log");
+    Scene run(plane("lj", "p p", "0 12 0 4", 1, 0.5) +
+              body("block 0 12 0 4 INF INF", "density 1 linear 100 0.25",
+                   "1.0 transfer flip 1.0 scheme musl") +
+              "variable v atom 1e-4*sin(2*PI*x/6)\nvelocity all set v_v 0 NULL\n"
+              "timestep 0.0055\n" +
+              (before ? strprintf("run %d\n", before) : "") + "log " + file.name +
+              "\nrun 200\nlog none\n");
+    std::smatch found;
+    const std::string text = file_text(file.name);
+    ASSERT_TRUE(std::regex_search(text, found, energy));
+    const double in_play = 0.25 * 48.0 * 1e-8;
+    EXPECT_LT(measured(strprintf("from step %d: taken", before), std::stod(found[1]) / in_play),
+              0.005);
+    EXPECT_LT(measured("added", std::stod(found[2]) / in_play), 0.005);
+  }
+}
+
 constexpr const char *SOFT = "neohookean 1e-4 0.3";
 
 struct Told {

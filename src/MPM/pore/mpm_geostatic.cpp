@@ -316,7 +316,8 @@ void MPMGeostatic::load(const std::vector<int> &list, const FixMPMMaterial *mate
 }
 
 /** Laws that keep the elastic strain: that with which their stress is the one that points have,
- *  logarithmic and by Newton's method, with differences for derivatives. first: its first history
+ *  logarithmic and by Newton's method, with differences for derivatives. A stress beyond yield is
+ *  that of no strain, and the one whose stress comes next to it is taken. first: its first history
  *  variable. */
 void MPMGeostatic::strain(const std::vector<int> &list, const FixMPMMaterial *material,
                           int first) const
@@ -325,9 +326,10 @@ void MPMGeostatic::strain(const std::vector<int> &list, const FixMPMMaterial *ma
   constexpr double START = -1.0e-6, DIFFERENCE = 1.0e-4, LONGEST = 0.02, CLOSE = 1.0e-13;
   Batch &batch = *field.batch;
   const int n = (int) list.size(), up = where.axis, aside = up ? 0 : 1;
-  double e[2][BATCH], shift[2][BATCH], s[3][2][BATCH];
+  double e[2][BATCH], shift[2][BATCH], s[3][2][BATCH], next[2][BATCH], least[BATCH];
   std::fill_n(e[0], n, START);
   std::fill_n(e[1], n, START);
+  std::fill_n(least, n, std::numeric_limits<double>::max());
   const auto stress = [&](int moved, double result[2][BATCH]) {
     load(list, material);
     for (int p = 0; p < n; p++)
@@ -353,7 +355,12 @@ void MPMGeostatic::strain(const std::vector<int> &list, const FixMPMMaterial *ma
     for (int p = 0; p < n; p++) {
       const double *const tau = field.points->tau[list[p]];
       const double r[2] = {tau[up] - s[2][0][p], tau[aside] - s[2][1][p]};
-      if (std::max(fabs(r[0]), fabs(r[1])) <= CLOSE * fabs(tau[up])) continue;
+      const double off = std::max(fabs(r[0]), fabs(r[1]));
+      if (off < least[p]) {
+        least[p] = off;
+        for (int c = 0; c < 2; c++) next[c][p] = e[c][p];
+      }
+      if (off <= CLOSE * fabs(tau[up])) continue;
       double d[2][2];
       for (int k = 0; k < 2; k++)
         for (int c = 0; c < 2; c++) d[k][c] = (s[c][k][p] - s[2][k][p]) / shift[c][p];
@@ -367,15 +374,18 @@ void MPMGeostatic::strain(const std::vector<int> &list, const FixMPMMaterial *ma
   }
   for (int p = 0; p < n; p++)
     for (int c = 0; c < 6; c++)
-      material->history[list[p]][first + c] = c < 3 ? std::expm1(2.0 * e[c == up ? 0 : 1][p]) : 0.0;
+      material->history[list[p]][first + c] = c < 3 ? std::expm1(2.0 * next[c == up ? 0 : 1][p])
+                                                    : 0.0;
 }
 
 /** A step without motion must not change the stress. Where it is beyond yield by less than the
- *  weight of a cell, as it can be next to the surface, points get what the law makes of it. */
+ *  weight of a cell, and no deeper than a cell below the surface, points get what the law makes of
+ *  it. */
 void MPMGeostatic::check_laws()
 {
   Batch &batch = *field.batch;
   double most = 0.0, changed = 0.0;
+  bool deep = false;
   const double h = field.lattice.h;
   std::string name;
   each_material_batch(field, [&](const std::vector<int> &list, const FixMPMMaterial *material) {
@@ -395,6 +405,7 @@ void MPMGeostatic::check_laws()
       const double cell = atom->rmass[i] / V * where.weight * force->nktv2p * h;
       if (change <= SAME * cell) continue;
       changed += 1.0;
+      deep = deep || height(i) < where.top - h;
       for (int c = 0; c < 6; c++) tau[c] = batch.J[p] * batch.stress[c][p];
       for (int k = 0; k < material->nhistory; k++) material->history[i][k] = batch.history[k][p];
       if (change / cell > most) {
@@ -403,7 +414,7 @@ void MPMGeostatic::check_laws()
       }
     }
   });
-  if (most > 1.0)
+  if (most > 1.0 || deep)
     error->one(
         FLERR, Error::NOLASTLINE,
         "{}: the law of fix mpm/material {} does not keep the stress, by {:.3g} times the weight "
