@@ -248,6 +248,54 @@ SERIAL_TEST(Bar, OfElementsGainsNothing)
   }
 }
 
+// what never comes to rest is told, with what helps, and what is on its way is not
+SERIAL_TEST(Relax, TellsOfForcesThatStayUnbalanced)
+{
+  const auto soft = [](const std::string &options, int points, int n = 4) {
+    auto scene = replaced(beam(n, "1e-5", options), "linear 1e8 0", "neohookean 1e6 0.3");
+    scene = replaced(scene, "-0.3 0.4", "-1.2 0.4");
+    scene = replaced(scene, strprintf("spacing %.17g", 0.05 / n),
+                     strprintf("spacing %g", 0.1 / n / points));
+    return replaced(scene, "timestep ", "thermo 100000\nfix dt all mpm/dt 0.6\n#");
+  };
+  const std::string words = "forces get no more balanced",
+                    usl = "scheme usl, which takes far fewer";
+  const auto told = [&](const std::string &scene, int steps, const std::string &what) {
+    return times_said(scene + strprintf("run %d\n", steps), what);
+  };
+  EXPECT_EQ(told(soft("transfer fmpm 2", 2), 6000, "give fix mpm the transfer apic"), 1);
+  EXPECT_EQ(told(soft("transfer apic", 2), 6000, words), 0);
+  EXPECT_EQ(told(soft("", 1, 2), 3000, "use two points per cell"), 1);
+  EXPECT_EQ(told(soft("scheme musl", 2), 3000, usl), 1);
+  EXPECT_EQ(told(soft("", 2), 1000, "): run more steps"), 1);
+}
+
+// a strip a hundred times as long as thick bends more slowly than anybody waits for; one that is
+// pulled along itself does not
+SERIAL_TEST(Relax, TellsOfThinBodiesThatBend)
+{
+  const auto strip = [](const char *gravity, double length) {
+    return plane("si", "f f", strprintf("0 %g -0.2 0.2", length + 0.02), 1, 0.0015) +
+        strprintf("region strip block 0 %g 0 0.01 INF INF\n", length) +
+        "fix grid all mpm 0.005 frame total\ncreate_points 1 region strip ppc 2\n"
+        "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
+        "fix clamp all mpm/boundary xlo stick\nthermo 100000\nfix dt all mpm/dt 0.6\n"
+        "fix g all gravity 0.001 vector " +
+        gravity + "\nfix rest all mpm/relax 1e-5\n";
+  };
+  const auto told = [&](const char *gravity, double length) {
+    return times_said(replaced(strip(gravity, length), "1e-5", "1e-13") + "run 2000\nrun 1\n",
+                      "use fix mpm/implicit static in its place");
+  };
+  EXPECT_EQ(told("0 -1 0", 0.6), 1);
+  EXPECT_EQ(told("1 0 0", 0.6), 0);
+  EXPECT_EQ(told("0 -1 0", 0.3), 0);
+  // the remedy
+  Scene run(replaced(replaced(strip("0 -1 0", 0.6), "mpm/relax 1e-5", "mpm/implicit static"),
+                     "fix dt all mpm/dt 0.6\n", "timestep 1\n"));
+  EXPECT_EQ(run.error("run 1\n"), "");
+}
+
 // forces are those of LAMMPS's units: bodies in free fall, and under pressure
 SERIAL_TEST(Forces, HaveUnits)
 {

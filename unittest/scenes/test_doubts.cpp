@@ -6,6 +6,7 @@
 // What an input may say, but hardly means: one warning in any number of runs, and none in a scene
 // where the same numbers are right, and none with other units of the same scene.
 
+#include "mesh/stl_testing.h"
 #include "mpm_lammps.h"
 
 using namespace MPM_TEST;
@@ -75,6 +76,47 @@ SERIAL_TEST(Doubts, WaterAndSoil)
   EXPECT_EQ(told(scene(1.0, 300, 2.2e9, 1e-4, "fix g all gravity 9.81 vector 0 -1 0\n"),
                  "must be that of saturated soil"),
             2);    // with a weight, in each run
+}
+
+// the divisor of hydraulic conductivities against density times gravity, and flow without drag
+SERIAL_TEST(Doubts, WeightOfWaterAndItsFlow)
+{
+  const auto scene = [](double weight, double permeability, double g, const std::string &more = "",
+                        double scale = 1.0) {
+    return START + GRID +
+        strprintf("fix soil all mpm/material density %g linear %g 0.3\n", 2000 * scale,
+                  1e7 * scale) +
+        strprintf("fix w all mpm/pore %g %g %g soil soil 0.4 constant %g %s\n", 2.2e9 * scale,
+                  1000 * scale, weight, permeability, more.c_str()) +
+        strprintf("fix g all gravity %g vector 0 -1 0\n", g) + STEP;
+  };
+  const std::string divisor = "it is the divisor of hydraulic conductivities",
+                    fast = "drag hardly couples them", still = "nothing flows";
+  const auto only = [&](const std::string &text, const std::string &expected) {
+    for (const auto &words : {divisor, fast, still})
+      EXPECT_EQ(told(text, words), words == expected) << text << words;
+  };
+  only(scene(9810, 1e-4, 9.81), "");
+  only(scene(9.81, 1e-4, 9.81), divisor);    // kN, or gravity
+  only(scene(1000, 1e-4, 9.81), divisor);    // the density
+  only(scene(9.81e6, 1e-4, 9.81), divisor);
+  only(scene(10000, 1e-4, 9.81), "");    // rounded, and brine
+  only(scene(9810, 1e-4, 98.1), "");     // in a centrifuge
+  only(scene(1e-3, 1e-11, 9.81), "");    // a viscosity
+  only(scene(9.81, 1e-4, 0.0), "");
+  only(scene(9.81, 1e-4, 9.81, "", 1e-3), "");    // in kN, kPa, and t
+  only(scene(9810, 0.1, 9.81), "");               // gravel
+  only(scene(9810, 86.4, 9.81), fast);            // a meter in a day, as 24*3.6
+  only(scene(9810, 1e-25, 9.81), still);
+  const std::string dries = "retention vangenuchten 1e-4 2";
+  only(scene(9810, 1e-4, 9.81, dries), "");
+  only(scene(9810, 1e-25, 9.81, dries), still);
+  // a run of so many steps ends before them
+  EXPECT_EQ(told(scene(9810, 1e-8, 9.81), still), 0);
+  EXPECT_EQ(times_said(replaced(scene(9810, 1e-11, 9.81), "mpm/dt 0.5", "mpm/dt 0.5 until 1e-4") +
+                           "run 1000000\n",
+                       still),
+            1);
 }
 
 // the weight of a column of 0.4 m is 3.9 kPa, and the modulus of its lateral confinement 1.35 E
@@ -238,6 +280,136 @@ SERIAL_TEST(Doubts, TemperaturesOfStrength)
   EXPECT_EQ(told(heated(2000), wall), 1);
   EXPECT_EQ(told(heated(2000, 0.0), wall), 0);
   EXPECT_EQ(told(heated(1700), "a wall has the temperature"), 0);
+}
+
+// points in a wall, or in a rigid body, stay where they are: neither pushes them out
+SERIAL_TEST(Doubts, PointsThatBeginInWalls)
+{
+  const std::string words = "more than half a node spacing deep",
+                    law = "fix m all mpm/material density 1000 neohookean 1e6 0.3\n";
+  const auto scene = [&](const std::string &block, const std::string &wall,
+                         const std::string &kind) {
+    return START + "fix grid all mpm 0.05\nregion body block " + block +
+        " INF INF\ncreate_points 1 region body ppc 2\n" + law + "region w " + wall +
+        "\nfix w all mpm/boundary region w " + kind + "\n" + STEP;
+  };
+  const std::string high = "0.2 0.8 0.1 0.4", floor = "block INF INF INF 0.2 INF INF";
+  EXPECT_EQ(told(scene(high, floor, "separate"), words), 1);
+  EXPECT_EQ(told(scene(high, floor, "separate friction 0.3"), words), 1);
+  EXPECT_EQ(told(scene(high, "cylinder z 0.5 0.25 0.1 INF INF", "separate"), words), 1);
+  EXPECT_EQ(told(scene(high, floor + " move NULL NULL NULL", "separate"), words), 1);
+  const std::string parts = "region one block INF 0.5 INF 0.2 INF INF\n"
+                            "region two block 0.4 INF INF 0.2 INF INF\n";
+  EXPECT_EQ(told(replaced(scene(high, "union 2 one two", "separate"), "\nregion w ",
+                          "\n" + parts + "region w "),
+                 words),
+            1);
+  // at the surface, within half a spacing of it, and what holds it
+  EXPECT_EQ(told(scene("0.2 0.8 0.2 0.4", floor, "separate"), words), 0);
+  EXPECT_EQ(told(scene("0.2 0.8 0.175 0.4", floor, "separate"), words), 0);
+  EXPECT_EQ(told(replaced(scene("0.2 0.8 0.175 0.4", "union 2 one two", "separate"), "\nregion w ",
+                          "\n" + parts + "region w "),
+                 words),
+            0);
+  for (const char *kind : {"stick", "slip"}) EXPECT_EQ(told(scene(high, floor, kind), words), 0);
+  // the remedy, and a wall that comes later, or that material has reached
+  EXPECT_EQ(told(replaced(scene("0.2 0.8 0.1 0.4", "block INF INF INF 0.2 INF INF", "separate"),
+                          "region body block 0.2 0.8 0.1 0.4 INF INF\n",
+                          "region all block 0.2 0.8 0.1 0.4 INF INF\n"
+                          "region above block INF INF INF 0.2 INF INF side out\n"
+                          "region body intersect 2 all above\n"),
+                 words),
+            0);
+  const auto open = scene("0.2 0.8 0.2 0.4", floor, "separate");
+  EXPECT_EQ(told(open +
+                     "region late block 0.5 0.7 0.2 0.4 INF INF\nrun 2\n"
+                     "fix late all mpm/boundary region late separate\n",
+                 words),
+            1);
+  EXPECT_EQ(told(open + "run 2\ndisplace_atoms all move 0 -0.1 0 units box\n", words), 0);
+}
+
+/** How often this is said of a cube of 0.3 in or over a bed. */
+static int told_of_stone(const std::string &bed, const std::string &stone, const std::string &words,
+                         const std::string &more = "")
+{
+  const ScratchFile file("stone.stl", text_of(box({0.0, 0.0, 0.0}, {0.3, 0.3, 0.3})));
+  return told(space("si", "f f f", "0 1 0 1 0 1", 1, 0.03) + "fix grid all mpm 0.1\n" + bed +
+                  "\ncreate_points 1 region bed ppc 2\n"
+                  "fix m all mpm/material density 1000 neohookean 1e6 0.3\n"
+                  "fix w all mpm/boundary xlo xhi ylo yhi zlo slip\nregion stone mpm/mesh " +
+                  file.name + " 1.0 0.35 0.35 0.4\nfix stone all mpm/rigid stone density 2600 " +
+                  stone + "\n" + more + STEP,
+              words);
+}
+
+SERIAL_TEST(Doubts, PointsThatBeginInRigidBodies)
+{
+  const std::string words = "begin in the body, more than half a node spacing deep",
+                    low = "region bed block INF INF INF INF INF 0.4",
+                    high = "region bed block INF INF INF INF INF 0.6",
+                    cut = "region upper block INF INF INF INF INF 0.6\nregion dry block 0.35 0.65 "
+                          "0.35 0.65 0.4 0.7 side out\nregion bed intersect 2 upper dry";
+  for (const char *kind : {"slip", "separate", "separate friction 0.3"}) {
+    EXPECT_EQ(told_of_stone(high, kind, words), 1) << kind;
+    EXPECT_EQ(told_of_stone(low, kind, words), 0) << kind;
+    EXPECT_EQ(told_of_stone(cut, kind, words), 0) << kind;
+  }
+  EXPECT_EQ(told_of_stone(high, "stick", words), 0);
+}
+
+SERIAL_TEST(Doubts, RigidBodiesWithoutWeight)
+{
+  const std::string words = "does not act on the body",
+                    g = "fix g all gravity 9.81 vector 0 0 -1\n",
+                    low = "region bed block INF INF INF INF INF 0.4";
+  EXPECT_EQ(told_of_stone(low, "separate", words, g), 1);
+  EXPECT_EQ(told_of_stone(low, "separate", words), 0);
+  EXPECT_EQ(told_of_stone(low, "separate", words, replaced(g, "9.81", "0")), 0);
+  for (const char *meant : {"gravity 0 0 -9.81", "gravity 0 0 0", "force 0 0 -100", "hold z"})
+    EXPECT_EQ(told_of_stone(low, std::string("separate ") + meant, words, g), 0) << meant;
+  EXPECT_EQ(told_of_stone(low, "separate hold x y", words, g), 1);
+}
+
+// gas that nothing surrounds, unless it flies apart in any case
+SERIAL_TEST(Doubts, GasInVacuum)
+{
+  const std::string words = "as into vacuum";
+  const auto scene = [](const std::string &gas, const std::string &more = "") {
+    return START + "fix grid all mpm 0.05\nregion gas block " + gas +
+        " INF INF\ncreate_points 1 region gas ppc 2\n"
+        "fix m all mpm/material density 1.2 eos ideal/gas 1.4 pressure 1e5\n"
+        "fix w all mpm/boundary xlo xhi ylo yhi slip\n" +
+        more + STEP;
+  };
+  EXPECT_EQ(told(scene("0 1 0 0.5"), words), 1);
+  EXPECT_EQ(told(scene("0.3 0.7 0.3 0.7"), words), 1);
+  EXPECT_EQ(told(scene("0 1 0 1"), words), 0);
+  EXPECT_EQ(told(scene("0 1 0 0.95"), words), 0);
+  EXPECT_EQ(told(replaced(scene("0 1 0 0.5"), "pressure 1e5", "pressure 1e-3") +
+                     "velocity all set -1 0 0\n",
+                 words),
+            0);
+  // the remedies, a piston, and another body
+  EXPECT_EQ(told(scene("0 1 0 0.5", "fix air all mpm/traction free pressure 1e5\n"), words), 0);
+  EXPECT_EQ(told(scene("0 1 0 0.5",
+                       "region lid block INF INF 0.5 INF INF INF\n"
+                       "fix lid all mpm/boundary region lid slip\n"),
+                 words),
+            0);
+  EXPECT_EQ(
+      told(
+          replaced(scene("0 1 0 0.5", "fix lid lid mpm/material density 1000 neohookean 1e6 0.3\n"),
+                   "fix m all",
+                   "region lid block INF INF 0.5 0.7 INF INF\ncreate_points 2 region lid ppc "
+                   "2\ngroup lid type 2\ngroup gas type 1\nfix m gas"),
+          words),
+      0);
+  const auto periodic = [&](const std::string &gas) {
+    return replaced(replaced(scene(gas), "boundary f f p", "boundary p f p"), "xlo xhi ", "");
+  };
+  EXPECT_EQ(told(periodic("0 1 0 1"), words), 0);
+  EXPECT_EQ(told(periodic("0 0.8 0 1"), words), 1);
 }
 
 // what a data file loses, where there is something to lose

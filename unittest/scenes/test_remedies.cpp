@@ -206,6 +206,20 @@ const Remedy contacts[] = {
 };
 
 const Remedy walls[] = {
+    {"WallBeginsInside",
+     one("",
+         "region low block INF INF INF 1.5 INF INF\nfix w all mpm/boundary region low separate\n"),
+     "create points outside of it only",
+     {{"region r1 block 2 8 0 3 INF INF\n",
+       "region r0 block 2 8 0 3 INF INF\nregion above block INF INF INF 1.5 INF INF side out\n"
+       "region r1 intersect 2 r0 above\n"}}},
+    {"WallBeginsInsideHeld",
+     one("",
+         "region low block INF INF INF 1.5 INF INF\nfix w all mpm/boundary region low separate\n"),
+     "use stick to hold them",
+     {{"low separate", "low stick"}}},
+    {"GasInVacuum", one("", "", "eos ideal/gas 1.4 pressure 10.0"), "with free pressure",
+     add("fix air all mpm/traction free pressure 10.0")},
     {"WallTotalMoves",
      one(" frame total",
          "variable d equal -0.05*step*dt\nregion w block INF INF 3 4 INF INF move NULL v_d NULL\n"
@@ -369,6 +383,14 @@ const Remedy heats[] = {
 };
 
 const Remedy pores[] = {
+    {"PoreWeight",
+     one("", replaced(SOIL, "0.5 1.0 soil", "0.5 0.2 soil") + "\n"),
+     "density times gravity",
+     {{"0.5 0.2 soil", "0.5 0.1 soil"}}},
+    {"PoreFreeFlow",
+     one("", replaced(SOIL, "constant 0.01", "constant 100.0") + "\n"),
+     "is the coefficient a hydraulic conductivity",
+     {{"constant 100.0", "constant 0.01"}}},
     {"PoreShape",
      one(" shape gimp", SOIL + "\n"),
      "use shape quadratic or cubic",
@@ -585,9 +607,15 @@ const Remedy flows[] = {
      flow("", "fix floor all mpm/boundary ylo slip\n"),
      "or remove fix floor",
      {{FLOOR, ""}}},
+    {"FlowBodyWeight",
+     flow(" region ball",
+          "region ball sphere 10 1 0 0.9\nfix b all mpm/rigid ball density 2.0 slip\n"),
+     "use its keyword gravity",
+     {{"density 2.0 slip", "density 2.0 slip gravity 0 -0.2 0"}}},
     {"FlowBodyFriction",
      flow(" region ball",
-          "region ball sphere 10 1 0 0.9\nfix b all mpm/rigid ball density 2.0 separate\n"),
+          "region ball sphere 10 1 0 0.9\nfix b all mpm/rigid ball density 2.0 separate gravity 0 "
+          "0 0\n"),
      "use slip",
      {{"density 2.0 separate", "density 2.0 slip"}}},
 };

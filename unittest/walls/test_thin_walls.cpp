@@ -294,6 +294,61 @@ SERIAL_TEST(ThinRegions, AreReported)
   EXPECT_FALSE(told(lower, "prism 0.7 1.3 0.1 0.41 -1 1 0.3 0 0", "separate"));
 }
 
+/** Is a region reported in a block that does not have its place? Its faces are planes through places
+ *  (x, y) with the angles of their normals (degrees). */
+static bool is_told_of(const std::vector<std::array<double, 3>> &planes, const std::string &kind)
+{
+  const auto intersection = [&](const char *name, const std::string &side) {
+    std::string text, names;
+    for (std::size_t k = 0; k < planes.size(); k++) {
+      const double angle = planes[k][2] * std::acos(-1.0) / 180;
+      text +=
+          strprintf("region %s%zu plane %.17g %.17g 0 %.17g %.17g 0 %s\n", name, k, planes[k][0],
+                    planes[k][1], -std::cos(angle), -std::sin(angle), side.c_str());
+      names += strprintf(" %s%zu", name, k);
+    }
+    return std::make_pair(text, strprintf("%zu", planes.size()) + names);
+  };
+  const auto in = intersection("in", "side in"), out = intersection("out", "side out");
+  return times_said(plane("si", "f f", "0 2 0 1.4", 1, 0.015) + "fix grid all mpm 0.05\n" +
+                        in.first + out.first + "region tool intersect " + in.second +
+                        "\nregion rest union " + out.second +
+                        "\nregion block block 0.2 1.8 0.3 1.1 INF INF\n"
+                        "region body intersect 2 block rest\ncreate_points 1 region body ppc 2\n"
+                        "fix m all mpm/material density 1000 linear 1e5 0.3\n"
+                        "fix w all mpm/boundary region tool " +
+                        kind + strprintf("\nfix g all gravity %g vector 0 -1 0\n", g) +
+                        run_until(0.03),
+                    THINNER) > 0;
+}
+
+// a line along an axis sees the tip of a corner; a plate is thin around it, too
+SERIAL_TEST(ThinRegions, CornersAreNoPlates)
+{
+  for (const char *kind : {"separate", "slip friction 0.1", "slip", "stick"}) {
+    SCOPED_TRACE(kind);
+    for (const double x : {1.0, 1.02})
+      for (const double y : {0.49, 0.52, 0.54})
+        for (const double angle : {30.0, 45.0, 60.0, 70.0})
+          EXPECT_FALSE(is_told_of({{x, y, angle}, {x, y, angle + 90}}, kind))
+              << x << ' ' << y << ' ' << angle;
+    for (const double y : {0.49, 0.52, 0.54})    // sharper ones
+      for (const double angle : {15.0, 30.0, 45.0})
+        EXPECT_FALSE(is_told_of({{1.0, y, angle}, {1.0, y, angle + 120}}, kind))
+            << y << ' ' << angle;
+    for (const double angle : {0.0, 20.0, 45.0}) {
+      const double c = std::cos(angle * std::acos(-1.0) / 180),
+                   s = std::sin(angle * std::acos(-1.0) / 180);
+      const auto plate = [&](double thick) {
+        return is_told_of({{1 - thick * s, 0.71 + thick * c, angle + 90}, {1, 0.71, angle - 90}},
+                          kind);
+      };
+      EXPECT_TRUE(plate(0.03)) << angle;
+      EXPECT_FALSE(plate(0.12)) << angle;
+    }
+  }
+}
+
 TEST(ThinRegions, AreReportedIn3d)
 {
   const auto is_told = [](const std::string &tool, const std::string &kind) {

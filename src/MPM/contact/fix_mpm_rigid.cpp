@@ -9,6 +9,7 @@
 #include "contact/fix_mpm_rigid.h"
 
 #include "base/mpm_find_fixes.h"
+#include "base/mpm_gravity.h"
 #include "base/mpm_image.h"
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
@@ -94,13 +95,14 @@ Options MPMRigidOptions::declare()
 }
 
 FixMPMRigid::FixMPMRigid(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), contact(lmp, *this)
+    Fix(lmp, narg, arg), contact(lmp, *this), doubts(lmp)
 {
   if (igroup != 0)
     error->all(FLERR, 1, "Fix mpm/rigid acts on nodes, which have no group: use group all");
   Options options = declare();
   read_options(lmp, options, narg, arg, 3);
   if (heat.heats()) contact.heating = std::make_unique<MPMFrictionHeat>(lmp, heat);
+  weight_given = options.given("gravity");
   find_shape();
   if (domain->dimension == 2) {
     if (v[2] != 0.0 || omega[0] != 0.0 || omega[1] != 0.0 || fixed[2] || fixed[3] || fixed[4])
@@ -253,6 +255,34 @@ void FixMPMRigid::init()
 void FixMPMRigid::init_action()
 {
   if (contact.heating) contact.heating->begin_run(*this, MPMField::all(lmp));
+}
+
+/** What sticks may be an inclusion. */
+void FixMPMRigid::setup(int)
+{
+  check_weight();
+  const auto fields = MPMField::all(lmp);
+  if (kind == STICK || dt_last > 0.0 || fields.empty()) return;
+  doubts.check_inside("Fix mpm/rigid " + std::string(id), "the body", fields,
+                      [this](const double *x, double far) {
+                        return distance(x, far);
+                      });
+}
+
+/** A body that is free to fall, and has no load of its own, is hardly meant to have no weight where
+ *  other matter has one. */
+void FixMPMRigid::check_weight()
+{
+  const auto is_given = [](const NumberOrVariable &one) {
+    return !one.variable.empty() || one.value != 0.0;
+  };
+  if (weight_given || std::any_of(load, load + 3, is_given)) return;
+  double g[3], along = 0.0;
+  MPMGravity(lmp).find(g);
+  for (int d = 0; d < 3; d++) along += fixed[d] ? 0.0 : fabs(g[d]);
+  doubts.check(
+      MPMDoubts::WEIGHTLESS, along > 0.0 ? 1.0 : 0.0, "Fix mpm/rigid " + std::string(id),
+      fmt::format("fix gravity ({:.6g} {:.6g} {:.6g}) does not act on the body", g[0], g[1], g[2]));
 }
 
 /** Forces that the input gives. */

@@ -17,6 +17,7 @@ FixStyle(mpm/rigid,FixMPMRigid);
 
 #include "base/mpm_step_limit.h"
 #include "contact/mpm_rigid_contact.h"
+#include "field/mpm_doubts.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
 #include "fix.h"
@@ -52,12 +53,14 @@ class FixMPMRigid :
   bool gives_heat() const override { return heat.heats(); }
   void init() override;
   void init_action() override;
+  void setup(int) override;
   void write_restart(FILE *) override;
   void restart(char *) override;
   double compute_scalar() override;
   double compute_vector(int) override;
 
   bool decides_contact(const MPMField &) const override { return kind == SEPARATE; }
+  bool acts_inside() const override { return true; }
   void act(double dt, Stage) override;
 
   /** Signed distance of x from the surface, negative inside; far if it is larger. Not for bodies in
@@ -97,6 +100,8 @@ class FixMPMRigid :
   double first[3];    // center of the body in the region
   MPMRigidContact contact;
   bool warned_of_faces = false, told = false;
+  bool weight_given = false;    // is there the keyword gravity?
+  MPMDoubts doubts;
 
   void find_shape();
   void load_impulse(double dt);
@@ -108,6 +113,7 @@ class FixMPMRigid :
   MPMRigidMember begin_step(double dt);
   void end_step(double dt, const MPMRigidMember &);
   void warn_of_faces();
+  void check_weight();
 };
 
 }    // namespace LAMMPS_NS

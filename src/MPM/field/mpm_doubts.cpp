@@ -11,6 +11,7 @@
 #include "atom.h"
 #include "base/mpm_find_fixes.h"
 #include "base/mpm_gravity.h"
+#include "base/mpm_points.h"
 #include "base/mpm_region_image.h"
 #include "comm.h"
 #include "domain.h"
@@ -18,11 +19,13 @@
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
 #include "field/mpm_interfaces.h"
+#include "field/mpm_node_action.h"
 #include "force.h"
 #include "material/material.h"
 #include "material/material_point.h"
 #include "material/softening.h"
 #include "math_extra.h"
+#include "modify.h"
 #include "region.h"
 #include "update.h"
 
@@ -36,6 +39,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr double INF = std::numeric_limits<double>::infinity();
+static constexpr double ALONE = 1.5;    // distance of gas from the end of the box [node spacings]
+static constexpr double ROUND_OFF = 1.0e-6;    // of depths in walls [node spacings]
 
 /** Ratios from low to high are doubtful; text: what follows from them, and the remedy. */
 struct Doubt {
@@ -72,7 +77,21 @@ static const Doubt table[] = {
     {1.0e-30, 0.5,
      "it is pressed flat where it stands: are modulus, density, and gravity in the units of the "
      "input?"},
-    {1.0, 1.0, "no heat goes there before material comes: is it the right region?"}};
+    {1.0, 1.0, "no heat goes there before material comes: is it the right region?"},
+    {0.5, INF,
+     "they are kept from going deeper, but not pushed out: create points outside of it only "
+     "(region "
+     "intersect, with one of side out), or use stick to hold them"},
+    {1.0, 1.0, "use its keyword gravity, with zeros if it shall have no weight"},
+    {1.0, 1.0,
+     "it is the divisor of hydraulic conductivities, density times gravity in the units of "
+     "pressure over length"},
+    {100.0, INF,
+     "drag hardly couples them: is the coefficient a hydraulic conductivity, in the units of "
+     "velocity of the input, and the weight of the water per volume?"},
+    {1.0, 1.0,
+     "it expands into the empty part of the box as into vacuum: if air is there, use fix "
+     "mpm/traction with free pressure, or a wall at its surface"}};
 
 void MPMDoubts::check(Kind kind, double ratio, const std::string &who, const std::string &what)
 {
@@ -188,6 +207,112 @@ void MPMDoubts::check_weight(const MPMField &field)
           fmt::format("the modulus {:.4g} of this solid is less than the pressure of its own "
                       "weight, {:.4g}",
                       modulus, weight));
+  }
+}
+
+/** Other fixes that may hold a gas have surfaces that are not known here. */
+static bool may_hold_gas(const Fix *fix)
+{
+  const auto *const action = dynamic_cast<const MPMNodeAction *>(fix);
+  static const std::set<std::string> others = {"mpm/traction", "mpm/elements", "mpm/airbag",
+                                               "mpm/emit",     "mpm/mesh",     "mpm/dashpot",
+                                               "mpm/pml"};
+  return (action && action->acts_inside()) || others.count(fix->style);
+}
+
+void MPMDoubts::check_gas(const std::vector<MPMField *> &fields)
+{
+  const auto &fixes = modify->get_fix_list();
+  if (std::any_of(fixes.begin(), fixes.end(), may_hold_gas)) return;
+  double h = 0.0, end[6], ends[6];             // low ends, and minus high ends
+  double sums[3] = {0.0, 0.0, 0.0}, all[3];    // energies of pressure and motion, volume
+  std::fill_n(end, 6, INF);
+  std::vector<char> is_gas(atom->nlocal, 0);
+  for (const auto *field : fields)
+    for (const auto *of : field->materials) {
+      if (!is_ideal_gas(*of->material)) continue;
+      h = std::max(h, field->lattice.h);
+      for (int i = 0; i < atom->nlocal; i++) {
+        if (!field->is_point(i) || field->material_of(i) != of) continue;
+        is_gas[i] = 1;
+        const double *const tau = field->points->tau[i], J = field->points->jacobian(i);
+        const double pressure = -(tau[0] + tau[1] + tau[2]) / (3.0 * J);
+        sums[0] += pressure * J * atom->vfrac[i] / force->nktv2p;
+        sums[1] += 0.5 * atom->rmass[i] * MathExtra::lensq3(atom->v[i]) * force->mvv2e;
+        sums[2] += J * atom->vfrac[i];
+        for (int d = 0; d < 3; d++) {
+          end[d] = std::min(end[d], atom->x[i][d]);
+          end[3 + d] = std::min(end[3 + d], -atom->x[i][d]);
+        }
+      }
+    }
+  MPI_Allreduce(end, ends, 6, MPI_DOUBLE, MPI_MIN, world);
+  MPI_Allreduce(sums, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  if (!(all[0] > all[1])) return;    // none, or what flies apart anyway
+  for (int d = 0; d < domain->dimension; d++) {
+    const double lo = ends[d], hi = -ends[3 + d];
+    double empty[2] = {lo - domain->boxlo[d], domain->boxhi[d] - hi};
+    if (domain->periodicity[d]) empty[0] = empty[1] = empty[0] + empty[1];
+    int mine[2] = {0, 0}, others[2];
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (is_gas[i]) continue;
+      mine[0] |= atom->x[i][d] < lo + h;
+      mine[1] |= atom->x[i][d] > hi - h;
+    }
+    MPI_Allreduce(mine, others, 2, MPI_INT, MPI_MAX, world);
+    for (int side = 0; side < 2; side++) {
+      const bool fits = domain->boundary[d][side] > 1;    // the box ends where points do
+      if (fits || others[side] || (domain->periodicity[d] && others[1 - side]) ||
+          !(empty[side] > ALONE * h))
+        continue;
+      return check(GAS_ALONE, 1.0, "Fix mpm",
+                   fmt::format("the pressure of gas is absolute, {:.4g} on average, and nothing is "
+                               "next to its end at {} = {:.6g}",
+                               all[0] / all[2] * force->nktv2p, (char) ('x' + d),
+                               side == 0 ? lo : hi));
+    }
+  }
+}
+
+/** Half a spacing is allowed: bodies of whole points end in steps at inclined and curved
+ *  surfaces. */
+void MPMDoubts::check_inside(const std::string &who, const std::string &which,
+                             const std::vector<MPMField *> &fields,
+                             const std::function<double(const double *x, double far)> &distance)
+{
+  for (const auto *field : fields) {
+    const double h = field->lattice.h, least = table[BEGINS_INSIDE].low;
+    // the distance is not always known where it is large
+    const auto is_deep = [&](const double *x) {
+      bool deep = true;
+      for (int d = 0; d < field->lattice.dim; d++)
+        for (const double way : {-least * h, least * h}) {
+          double at[3];
+          MathExtra::copy3(x, at);
+          at[d] += way;
+          deep = deep && distance(at, h) < 0.0;
+        }
+      return deep;
+    };
+    bigint mine = 0, all;
+    double deepest = 0.0, of_all;
+    tagint tag = 0, example;
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i)) continue;
+      const double depth = -distance(atom->x[i], h) / h;
+      if (!(depth > least + ROUND_OFF) || (depth >= 1.0 && !is_deep(atom->x[i]))) continue;
+      mine++;
+      deepest = std::max(deepest, depth);
+      tag = std::max(tag, atom->tag[i]);
+    }
+    MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+    if (all == 0) continue;
+    MPI_Allreduce(&deepest, &of_all, 1, MPI_DOUBLE, MPI_MAX, world);
+    MPI_Allreduce(&tag, &example, 1, MPI_LMP_TAGINT, MPI_MAX, world);
+    check(BEGINS_INSIDE, of_all, who,
+          fmt::format("{} points of fix mpm {} begin in {}, more than half a node spacing deep, "
+                      "for instance point {}",
+                      all, field->id(), which, example));
   }
 }
 

@@ -11,8 +11,10 @@
 
 #include "pointers.h"
 
+#include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace MPM_NS {
 class Material;
@@ -39,7 +41,12 @@ class MPMDoubts : protected Pointers {
     MOLTEN,           ///< temperature over the melting temperature of a strength
     MOLTEN_WALL,      ///< temperature of a wall over this melting temperature
     SOFT_SOLID,       ///< modulus of a solid at rest over the pressure of its own weight
-    REGION_ALONE      ///< 1: no material is near the surface of a region with a condition
+    REGION_ALONE,     ///< 1: no material is near the surface of a region with a condition
+    BEGINS_INSIDE,    ///< depth of points in a wall or rigid body at the start, in node spacings
+    WEIGHTLESS,       ///< 1: there is a weight, but a rigid body has none
+    WATER_WEIGHT,     ///< 1: the weight of pore water is its density, gravity, or 1000 times wrong
+    FREE_FLOW,        ///< time in which pore water follows its soil over that of waves across it
+    GAS_ALONE         ///< 1: nothing is there that could hold a gas
   };
 
   explicit MPMDoubts(class LAMMPS *lmp) : Pointers(lmp) {}
@@ -60,6 +67,14 @@ class MPMDoubts : protected Pointers {
   void check_temperatures(const class MPMField &);
   /** Warns of solids that their own weight presses to nothing. Collective. */
   void check_weight(const class MPMField &);
+  /** Warns of gas that nothing can hold at an end of it: the box is empty there, and no fix is there
+   *  that could press on it. Collective. */
+  void check_gas(const std::vector<class MPMField *> &);
+  /** Warns of points that are in something that keeps points out: which. distance: of x from its
+   *  surface, negative inside, far or -far if it is greater or not known. Collective. */
+  void check_inside(const std::string &who, const std::string &which,
+                    const std::vector<class MPMField *> &,
+                    const std::function<double(const double *x, double far)> &distance);
 
  private:
   static constexpr int STEPS = 16;    // from one look to the next

@@ -86,6 +86,8 @@ class MPMNodeAction {
   /** Does the action keep the nodes of this field at x = 0, an axis of symmetry, from moving along
    *  x? */
   virtual bool holds_axis(const class MPMField &) const { return false; }
+  /** Can the action hold points elsewhere than at faces of the box? */
+  virtual bool acts_inside() const { return false; }
   /** May this field be without points at the start of a run, because they come later, or because
    *  others need its nodes? */
   virtual bool may_be_empty(const class MPMField &) const { return false; }

@@ -98,7 +98,9 @@ void MPMSetupChecks::look()
   if (weighed) return;
   weighed = true;
   if (update->firststep != 0) return;    // later, points may be anywhere
-  for (const auto *one : MPMField::all(lmp)) doubts.check_weight(*one);
+  const auto fields = MPMField::all(lmp);
+  for (const auto *one : fields) doubts.check_weight(*one);
+  doubts.check_gas(fields);
 }
 
 void MPMSetupChecks::coupling()

@@ -24,6 +24,7 @@
 #include "field/mpm_frame.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_strain.h"
+#include "field/mpm_time_limit.h"
 #include "implicit/mpm_mls_rotation.h"
 #include "walls/fix_mpm_boundary.h"
 
@@ -126,6 +127,11 @@ void FixMPMRelax::setup(int)
 {
   state = RUNNING;
   ratio = UNKNOWN;    // loads can be others
+  best = {UNKNOWN, damping.nsteps, damping.nrests};
+  start = damping.nsteps;
+  rests_before = damping.nrests;
+  look_at = 0.0;
+  measure();
 }
 
 /* ---------------------------------------------------------------------- */
@@ -192,6 +198,139 @@ void FixMPMRelax::look()
   for (const auto *field : fields)
     if (field->frame->strains_on_average()) ratio = UNKNOWN;
   if (ratio <= tolerance) falls = true;
+  look_for_stall();
+  look_for_bending();
+}
+
+/** Of all bodies together. The thickness is that of a straight strip or plate of their volume. */
+void FixMPMRelax::measure()
+{
+  double end[6], ends[6], mine = 0.0, volume;    // low ends, and minus high ends
+  std::fill_n(end, 6, UNKNOWN);
+  for (const auto *field : fields)
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i)) continue;
+      mine += field->points->jacobian(i) * atom->vfrac[i];
+      for (int d = 0; d < 3; d++) {
+        end[d] = std::min(end[d], atom->x[i][d]);
+        end[3 + d] = std::min(end[3 + d], -atom->x[i][d]);
+      }
+    }
+  MPI_Allreduce(end, ends, 6, MPI_DOUBLE, MPI_MIN, world);
+  MPI_Allreduce(&mine, &volume, 1, MPI_DOUBLE, MPI_SUM, world);
+  const int dim = fields[0]->lattice.dim;
+  length = thickness = 0.0;
+  if (fields[0]->options.axisymmetric) return;    // volumes are those of rings
+  double size[3];
+  for (int d = 0; d < dim; d++) size[d] = -ends[3 + d] - ends[d];
+  std::sort(size, size + dim);
+  length = size[dim - 1];
+  thickness = volume / (dim == 3 ? length * (size[1] + fields[0]->lattice.h) : length);
+}
+
+/** What bends slowly has a first rest after 1.55 (length/thickness)^2 (thickness/h) steps of the
+ *  limit, as a cantilever, and is at rest after half as many more. Bodies that are pulled or
+ *  pressed have a first rest when waves have come along them. */
+void FixMPMRelax::look_for_bending()
+{
+  constexpr double THIN = 40.0, CROSSED = 5.0, STEPS = 2.3;
+  const double steps = damping.nsteps - start;
+  if (warned_of_bending || !stops || damping.nrests > rests_before || steps < look_at ||
+      !(length > THIN * thickness))
+    return;
+  look_at = steps + 500.0;
+  double mine = UNKNOWN, limit, h = fields[0]->lattice.h;
+  for (const auto *field : fields) {
+    tagint tag;
+    double speed;
+    mine = std::min(mine, field->time_limit->stable_dt(tag, speed));
+    h = std::min(h, field->lattice.h);
+  }
+  MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
+  const double cell = limit / fields[0]->step_dt();    // steps
+  if (steps < CROSSED * length / h * cell) return;
+  warned_of_bending = true;
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/relax {}: there was no rest in {:.0f} steps, in which waves have come "
+        "{:.0f} times along the bodies: with {:.0f} times the length of their thickness, "
+        "those that bend take some {:.1g} steps: use fix mpm/implicit static in its place",
+        id, steps, CROSSED, length / thickness, STEPS * length * length / (thickness * h) * cell);
+}
+
+/** A body on its way to rest halves the ratio in a few rests. */
+void FixMPMRelax::look_for_stall()
+{
+  constexpr double LESS = 0.9, SHARE = 0.5, STEPS = 2000.0, RESTS = 20.0;
+  const double steps = damping.nsteps - best.step, rests = damping.nrests - best.nrests;
+  if (ratio < LESS * best.ratio) best = {ratio, damping.nsteps, damping.nrests};
+  if (warned_of_stall || !stops || steps < STEPS || steps < SHARE * (damping.nsteps - start) ||
+      rests < RESTS)
+    return;
+  warned_of_stall = true;
+  const std::string what = remedy();
+  if (comm->me == 0)
+    error->warning(
+        FLERR,
+        "Fix mpm/relax {}: forces get no more balanced: their ratio has not fallen below "
+        "{:.3g} for {:.0f} steps and {:.0f} rests (tolerance {:.3g}): {}",
+        id, LESS * best.ratio, steps, rests, tolerance, what);
+}
+
+/** Less than two points per cell and axis, in bodies whose points come to other cells? Collective. */
+bool FixMPMRelax::has_few_points() const
+{
+  constexpr double MOST = 0.6;    // volume of points on average, in cells
+  double mine[2] = {0.0, 0.0}, all[2];
+  for (const auto *field : fields) {
+    if (field->options.total) continue;
+    const double cell = std::pow(field->lattice.h, field->lattice.dim);
+    for (int i = 0; i < atom->nlocal; i++) {
+      if (!field->is_point(i) || field->is_element_node(i)) continue;
+      mine[0] += 1.0;
+      mine[1] += atom->vfrac[i] / (cell * field->frame->circle(atom->x[i][0]));
+    }
+  }
+  MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_SUM, world);
+  return all[1] > MOST * all[0];
+}
+
+/** Is this an option of any field? */
+bool FixMPMRelax::any_has(bool (*is)(const MPMFieldOptions &)) const
+{
+  return std::any_of(fields.begin(), fields.end(), [&](const MPMField *field) {
+    return is(field->options);
+  });
+}
+
+static bool maps_back(const MPMFieldOptions &options)
+{
+  return options.scheme != MPMFieldOptions::USL;
+}
+
+static bool refines(const MPMFieldOptions &options)
+{
+  return options.has_fmpm() || options.has_xpic();
+}
+
+std::string FixMPMRelax::remedy() const
+{
+  const bool few = has_few_points();
+  if (any_has(maps_back))
+    return "give fix mpm the scheme usl: the velocities that strain the points with this one leave "
+           "out what varies from node to node";
+  if (any_has(refines))
+    return "give fix mpm the transfer apic: with this one stops excite fast vibrations";
+  if (few)
+    return "use two points per cell and axis (ppc 2 of create_points): with fewer, bodies give way "
+           "without stress";
+  if (!may_start_by_half)
+    return "give fix mpm shape linear and fix mpm/dt a fraction of at most 0.35, as stops excite "
+           "fast vibrations, or do without walls that move and other physics until bodies rest";
+  return "there may be no equilibrium, of a body that nothing holds or that does not bear its "
+         "load; if "
+         "results are near enough, use a larger tolerance";
 }
 
 /** Of the points of this rank. */
@@ -253,8 +392,12 @@ void FixMPMRelax::post_run()
     error->warning(
         FLERR,
         "Fix mpm/relax {}: the run has ended {} (ratio of forces {:.3g}, tolerance {:.3g}): "
-        "run more steps",
-        id, nearly ? "just before the last rest" : "before forces are balanced", ratio, tolerance);
+        "{}",
+        id, nearly ? "just before the last rest" : "before forces are balanced", ratio, tolerance,
+        warned_of_stall || warned_of_bending ? "see the warning before"
+            : any_has(maps_back)
+            ? "run more steps, and give fix mpm the scheme usl, which takes far fewer"
+            : "run more steps");
   }
 }
 

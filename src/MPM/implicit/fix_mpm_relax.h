@@ -20,6 +20,9 @@ FixStyle(mpm/relax,FixMPMRelax);
 #include "fix.h"
 #include "implicit/mpm_kinetic_damping.h"
 
+#include <string>
+#include <vector>
+
 namespace LAMMPS_NS {
 
 /** Keywords of fix mpm/relax. */
@@ -75,12 +78,26 @@ class FixMPMRelax : public Fix, public MPMPhysics, private MPMRelaxOptions {
   std::vector<MPMField *> fields;
   bool may_start_by_half = false;
   bool warned_of_rotation = false;    // of bodies that have turned, with stress mls
+  /** The last time in this run that the ratio was clearly smaller than ever before. */
+  struct {
+    double ratio, step, nrests;
+  } best = {};
+  double start = 0.0, rests_before = 0.0;    // numbers of steps and rests before this run
+  double look_at = 0.0;                      // steps of this run
+  bool warned_of_stall = false, warned_of_bending = false;
+  double length = 0.0, thickness = 0.0;    // of all bodies together, at the start of the run
 
   void look();
   void rest();
   bool can_start_by_half(const MPMPlan &) const;
   void start_by_half();
   double force_of_stress() const;
+  void measure();
+  void look_for_bending();
+  void look_for_stall();
+  bool has_few_points() const;
+  bool any_has(bool (*)(const struct MPMFieldOptions &)) const;
+  std::string remedy() const;
 };
 
 }    // namespace LAMMPS_NS

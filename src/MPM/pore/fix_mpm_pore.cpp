@@ -23,6 +23,7 @@
 #include "modify.h"
 #include "pore/mpm_geostatic.h"
 #include "step/fix_mpm.h"
+#include "step/fix_mpm_dt.h"
 #include "variable.h"
 #include "walls/fix_mpm_boundary.h"
 
@@ -207,15 +208,6 @@ void FixMPMPore::init_physics(MPMPlan &plan)
          {o.averages_stress() || o.averages_volume() || o.averages_strain(), "locking",
           "the pressure of the water is an average already: use locking none"}});
   }
-  std::vector<int> here(options.soils.size(), 0);
-  for (int i = 0; i < atom->nlocal; i++) {
-    const auto *const soil = atom->vfrac[i] > 0.0 ? flow.soil_of(i) : nullptr;
-    for (std::size_t k = 0; k < options.soils.size() && soil; k++)
-      if (options.soils[k].material == soil->material) here[k] = 1;
-  }
-  double h = std::numeric_limits<double>::max();
-  for (const auto *field : plan.fields) h = std::min(h, field->lattice.h);
-  checks.warn_of_soils(here, !MPMGravity(lmp, "Fix mpm/pore").empty(), h);
   flow.find_crossing();
   flow.watch.warn_of_contact();
   flow.is_implicit = !flow.wet.empty() && !find_fixes<FixMPMImplicit>(lmp).empty();
@@ -225,6 +217,34 @@ void FixMPMPore::init_physics(MPMPlan &plan)
   flow.watch.start(options.formulation == MPMPoreOptions::U_P && !flow.is_implicit &&
                    !options.can_dry() && find_fixes<FixMPMRelax>(lmp).empty());
   if (flow.is_implicit) checks.check_implicit();
+}
+
+/** Before the time step is refused that is due to a wrong number. */
+void FixMPMPore::setup_pre_force(int)
+{
+  if (find_fixes<FixMPMDt>(lmp).empty()) warn_of_soils();
+}
+
+/** Now the time step is known that fix mpm/dt sets. */
+void FixMPMPore::setup(int)
+{
+  if (!find_fixes<FixMPMDt>(lmp).empty()) warn_of_soils();
+}
+
+void FixMPMPore::warn_of_soils()
+{
+  std::vector<MPMPoreChecks::Extent> extents(options.soils.size());
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto *const soil = atom->vfrac[i] > 0.0 ? flow.soil_of(i) : nullptr;
+    for (std::size_t k = 0; k < options.soils.size() && soil; k++)
+      if (options.soils[k].material == soil->material) extents[k].take(atom->x[i]);
+  }
+  MPMPoreChecks::Scene scene = {std::numeric_limits<double>::max(), 0.0, {}};
+  for (const auto &mine : flow.fields) scene.h = std::min(scene.h, mine->field.lattice.h);
+  scene.duration = update->dt * (double) update->nsteps;
+  for (const auto *fix : find_fixes<FixMPMDt>(lmp)) scene.duration = fix->time_left(scene.duration);
+  flow.weight.find(scene.gravity);
+  checks.warn_of_soils(extents, !flow.weight.empty(), scene);
 }
 
 void FixMPMPore::add_stages(MPMPlan &plan, MPMPlan::Place place)

@@ -32,8 +32,10 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, public MPMPorePressure
  public:
   FixMPMPore(class LAMMPS *, int, char **);
   ~FixMPMPore() override;
-  int setmask() override { return 0; }    // called by fix mpm
+  int setmask() override { return FixConst::PRE_FORCE; }    // for setup_pre_force() alone
   void init() override;
+  void setup_pre_force(int) override;
+  void setup(int) override;
   void post_run() override { flow.watch.look_at_inertia(); }
   double compute_scalar() override { return flow.volume_came(); }
   double compute_vector(int part) override { return flow.inflow(part); }
@@ -98,6 +100,7 @@ class FixMPMPore : public FixMPMState, public MPMPhysics, public MPMPorePressure
   std::vector<const class FixMPMRigid *> rigid_bodies;    // rigid bodies that seal what they touch
   std::vector<const class FixMPMBoundary *> walls;    // walls of regions that seal what they touch
 
+  void warn_of_soils();
   void find_seals();
   double distance_to_bodies(const double *x, double far) const;
   std::vector<double> initial_pressures() const;

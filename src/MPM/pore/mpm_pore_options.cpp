@@ -10,18 +10,22 @@
 
 #include "base/mpm_options.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "force.h"
 #include "input.h"
 #include "material/material.h"
 #include "material/material_point.h"
+#include "math_extra.h"
 #include "modify.h"
 #include "update.h"
 #include "variable.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 using namespace LAMMPS_NS;
@@ -406,9 +410,76 @@ void MPMPoreChecks::check_grains()
   grains_known = true;
 }
 
-/** The weight of water per volume is the divisor of hydraulic conductivities. */
+MPMPoreChecks::Extent::Extent()
+{
+  std::fill_n(lo, 3, std::numeric_limits<double>::max());
+  std::fill_n(hi, 3, -std::numeric_limits<double>::max());
+}
+
+void MPMPoreChecks::Extent::take(const double *x)
+{
+  for (int d = 0; d < 3; d++) {
+    lo[d] = std::min(lo[d], x[d]);
+    hi[d] = std::max(hi[d], x[d]);
+  }
+}
+
+double MPMPoreChecks::Extent::largest(int dim) const
+{
+  double size = 0.0;
+  for (int d = 0; d < dim; d++) size = std::max(size, hi[d] - lo[d]);
+  return size;
+}
+
+/** The weight of water per volume is the divisor of hydraulic conductivities. With permeabilities in
+ *  units of area it is a viscosity, which may be anything but these numbers. */
+void MPMPoreChecks::compare_weight(const double *gravity)
+{
+  constexpr double SAME = 0.02, THOUSAND = 1000.0;
+  const MPMPoreWater &water = options.water;
+  const double g = MathExtra::len3(gravity), weight = water.density * g * force->nktv2p;
+  if (!(weight > 0.0)) return;
+  const auto is_near = [&](double other) {
+    return fabs(water.resistance - other) < SAME * other;
+  };
+  const bool right = water.resistance > 0.5 * weight && water.resistance < 2.0 * weight;
+  const bool wrong = !right &&
+      (is_near(g) || is_near(water.density) || is_near(THOUSAND * weight) ||
+       is_near(weight / THOUSAND));
+  doubts.check(MPMDoubts::WATER_WEIGHT, wrong ? 1.0 : 0.0, "Fix mpm/pore " + id,
+               fmt::format("the weight of the water per volume is {:.6g}, and its density {:.6g} "
+                           "times gravity {:.6g} is {:.6g}",
+                           water.resistance, water.density, g, weight));
+}
+
+/** Any way of pressure may be meant, but not one that is nothing on the lattice, and not a drag that
+ *  is nothing for waves across all of the soil. */
+void MPMPoreChecks::compare_flow(const MPMPoreSoil &soil, const Material &material, double size,
+                                 const Scene &scene)
+{
+  if (soil.law == MPMPoreSoil::FORMULA || !(soil.permeability > 0.0)) return;
+  const std::string who = fmt::format("Fix mpm/pore {}: soil {}", id, soil.material);
+  const double mobility = soil.permeability / options.water.resistance;
+  double stiffness = MPMRestModuli(material).compression;
+  if (!(stiffness > 0.0)) stiffness = bulk_modulus(material);
+  if (!(stiffness > 0.0)) return;
+  const double spread = mobility * stiffness * scene.duration;
+  if (scene.duration > 0.0)
+    doubts.check(MPMDoubts::NO_FLOW, spread / (scene.h * scene.h), who,
+                 fmt::format("in the time {:.6g} of the run, pressure spreads by {:.3g}",
+                             scene.duration, sqrt(spread)));
+  const double units = force->nktv2p * force->mvv2e,
+               speed = sqrt(stiffness / (material.density() * units));
+  const double waits = mobility * material.density() * units, crosses = size / speed;
+  if (crosses > 0.0)
+    doubts.check(MPMDoubts::FREE_FLOW, waits / crosses, who,
+                 fmt::format("water and grains take the time {:.3g} to move together, and waves "
+                             "{:.3g} to cross the soil",
+                             waits, crosses));
+}
+
 void MPMPoreChecks::compare_soil(const MPMPoreSoil &soil, const Material &material, bool has_weight,
-                                 double h)
+                                 double size, const Scene &scene)
 {
   const std::string who = fmt::format("Fix mpm/pore {}: soil {}", id, soil.material);
   const MPMPoreWater &water = options.water;
@@ -421,33 +492,33 @@ void MPMPoreChecks::compare_soil(const MPMPoreSoil &soil, const Material &materi
   doubts.check(
       MPMDoubts::HEAVY_GRAINS, grains / water.density, who,
       fmt::format("grains have the density {:.6g}, the water {:.6g}", grains, water.density));
+  compare_flow(soil, material, size, scene);
   const double stiffness = MPMRestModuli(material).compression;
   if (!(stiffness > 0.0) || soil.retention.can_dry()) return;
   doubts.check(MPMDoubts::SOFT_WATER, water.bulk / (soil.porosity * stiffness), who,
                fmt::format("the water has the bulk modulus {:.6g}, and the skeleton the stiffness "
                            "{:.6g}",
                            water.bulk, stiffness));
-  const double duration = update->dt * (double) update->nsteps;
-  if (soil.law == MPMPoreSoil::FORMULA || !(soil.permeability > 0.0) || !(duration > 0.0)) return;
-  const double spread = soil.permeability / water.resistance * stiffness * duration;
-  doubts.check(MPMDoubts::NO_FLOW, spread / (h * h), who,
-               fmt::format("in the time {:.6g} of the run, pressure spreads by {:.3g}", duration,
-                           sqrt(spread)));
 }
 
-void MPMPoreChecks::warn_of_soils(const std::vector<int> &here, bool has_weight, double h)
+void MPMPoreChecks::warn_of_soils(const std::vector<Extent> &extents, bool has_weight,
+                                  const Scene &scene)
 {
-  std::vector<int> anywhere(here.size(), 0);
-  MPI_Allreduce(here.data(), anywhere.data(), (int) here.size(), MPI_INT, MPI_MAX, world);
+  compare_weight(scene.gravity);
   for (std::size_t k = 0; k < options.soils.size(); k++) {
     const auto &soil = options.soils[k];
     const auto *const fix =
         dynamic_cast<const FixMPMMaterial *>(modify->get_fix_by_id(soil.material));
     if (!fix) continue;    // init() reports this
-    if (anywhere[k]) compare_soil(soil, *fix->material, has_weight, h);
+    Extent all;
+    MPI_Allreduce(extents[k].lo, all.lo, 3, MPI_DOUBLE, MPI_MIN, world);
+    MPI_Allreduce(extents[k].hi, all.hi, 3, MPI_DOUBLE, MPI_MAX, world);
+    const bool is_there = all.hi[0] >= all.lo[0];
+    if (is_there)
+      compare_soil(soil, *fix->material, has_weight, all.largest(domain->dimension), scene);
     if (comm->me) continue;
     const double density = fix->material->density(), water = soil.porosity * options.water.density;
-    if (!anywhere[k])
+    if (!is_there)
       error->warning(FLERR,
                      "Fix mpm/pore {} has no points of soil {}: only points of the fix "
                      "mpm/material that soil names have water",

@@ -78,6 +78,20 @@ class MPMPoreChecks : protected Pointers {
   {
   }
 
+  /** Where points are; less than nothing: nowhere. */
+  struct Extent {
+    double lo[3], hi[3];
+    Extent();
+    void take(const double *x);
+    double largest(int dim) const;
+  };
+  /** Numbers of the run with which those of soils are compared. */
+  struct Scene {
+    double h;           ///< least node spacing
+    double duration;    ///< of the run; 0: not known
+    double gravity[3];
+  };
+
   /** Checks materials and variables of soils. */
   void check_soils() const;
   /** Checks soils with grains that are not rigid, once. */
@@ -85,9 +99,9 @@ class MPMPoreChecks : protected Pointers {
   /** Warns of soils without points, as with the ID of another material, where the ground stays dry,
    *  and of soils that are lighter than their water, whose grains have a negative weight; without
    *  gravity, much lighter soil is a way to leave out inertia. Also of numbers that hardly fit
-   *  together. here: which soils have points on this rank; has_weight: there is
-   *  gravity; h: least node spacing. Collective. */
-  void warn_of_soils(const std::vector<int> &here, bool has_weight, double h);
+   *  together. extents: of the points of each soil on this rank; has_weight: there is gravity.
+   *  Collective. */
+  void warn_of_soils(const std::vector<Extent> &extents, bool has_weight, const Scene &);
   /** Checks options that implicit steps cannot have: their equations are linear in the pressure of
    *  nodes. */
   void check_implicit() const;
@@ -101,7 +115,10 @@ class MPMPoreChecks : protected Pointers {
   bool grains_known = false;    // was check_grains() done?
   MPMDoubts doubts;
 
-  void compare_soil(const MPMPoreSoil &, const MPM_NS::Material &, bool has_weight, double h);
+  void compare_soil(const MPMPoreSoil &, const MPM_NS::Material &, bool has_weight, double size,
+                    const Scene &);
+  void compare_flow(const MPMPoreSoil &, const MPM_NS::Material &, double size, const Scene &);
+  void compare_weight(const double *gravity);
 };
 
 }    // namespace LAMMPS_NS

@@ -237,6 +237,11 @@ bool FixMPMDt::at_end() const
   return until > 0.0 && until - elapsed_time(*update) <= ROUND_OFF * until;
 }
 
+double FixMPMDt::time_left(double most) const
+{
+  return until > 0.0 ? std::min(most, until - elapsed_time(*update)) : most;
+}
+
 void FixMPMDt::stop_run()
 {
   ended = true;

@@ -56,6 +56,8 @@ class FixMPMDt : public Fix, private MPMDtOptions {
   void unpack_forward_comm(int, int, double *) override;
   double compute_scalar() override;
   double compute_vector(int) override;
+  /** Time to the end of the run, at most this one. */
+  double time_left(double most) const;
 
  private:
   /** The point that limits the time step, or the collision of grains. */

@@ -34,7 +34,7 @@ static constexpr const char *PERIODIC =
 
 FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
     Fix(lmp, narg, arg), wall(lmp, arg[0]), reaction(lmp, wall), contact(wall, reaction),
-    search(lmp, wall), thin_regions(lmp, wall), trial(lmp, wall, nodes, search)
+    search(lmp, wall), thin_regions(lmp, wall), trial(lmp, wall, nodes, search), doubts(lmp)
 {
   if (igroup != 0)
     error->all(FLERR, 1,
@@ -131,6 +131,17 @@ void FixMPMBoundary::init()
     if (fix->trial.has_friction()) rubbing.push_back(fix);
   thin_regions.begin_run();
   search.begin_run();
+}
+
+/** Other regions hold what is inside, as grips do; and later, points may be anywhere. */
+void FixMPMBoundary::setup(int)
+{
+  wall.setup();
+  if (!wall.region || wall.kind != MPMWall::SEPARATE || wall.state.acted) return;
+  doubts.check_inside("Fix mpm/boundary " + std::string(id), "its region " + wall.region_id,
+                      wall.fields, [this](const double *x, double far) {
+                        return distance(x, far);
+                      });
 }
 
 /** Refuses options of the field that do not work with this wall. */

@@ -15,6 +15,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 #ifndef LMP_FIX_MPM_BOUNDARY_H
 #define LMP_FIX_MPM_BOUNDARY_H
 
+#include "field/mpm_doubts.h"
 #include "field/mpm_friction_heat.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_trial_contact.h"
@@ -47,7 +48,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   int setmask() override { return 0; }    // called by fix mpm
   void init() override;
   void init_action() override { reaction.begin_run(*this); }
-  void setup(int) override { wall.setup(); }
+  void setup(int) override;
   void post_run() override { thin_regions.report(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
@@ -85,6 +86,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   /** Signed distance of x from the surface of the region, negative inside; far if it is larger.
    *  Only during a run. */
   double distance(const double *x, double far) const { return wall.surface->distance(x, far); }
+  bool acts_inside() const override { return is_region(); }
   bool holds_axis(const MPMField &field) const override { return wall.holds_axis(field); }
   /** Adds the faces, or the region, to what rigid bodies can meet in a step. */
   void list_obstacles(double dt, std::vector<std::unique_ptr<MPMObstacle>> &);
@@ -116,6 +118,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   MPMWallContactSearch search;
   MPMThinRegions thin_regions;
   MPMWallTrial trial;
+  MPMDoubts doubts;
   std::vector<FixMPMBoundary *> rubbing;    // walls with friction
   bool has_rubbed = false;                  // was rub() called in this step?
 

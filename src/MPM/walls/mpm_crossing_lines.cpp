@@ -223,10 +223,58 @@ bool MPMCrossingLines::find(const MPMWallNode &from_node, MPMCrossing &c)
     if (wall.surface->has(at)) continue;
     if (deep == RESOLVED) {
       at[a] = surface_x - outward * 0.05 * h;    // a line along the edge of the region is not in it
-      c.in_plate = wall.surface->has(at);
+      const bool sound = wall.surface->has(at);
+      at[a] = surface_x;
+      c.in_plate = sound && is_plate(at, c.normal);
     }
     if (!is_outside) c.front = MPMCrossing::THIN_PLACE;
   }
+  return true;
+}
+
+/** Directions along a surface with the normal n, as many as it returns: in 3d axes and diagonals. */
+static int directions_along(const double *n, int dim, double t[4][3])
+{
+  if (dim == 2) {
+    t[0][0] = -n[1];
+    t[0][1] = n[0];
+    t[0][2] = 0.0;
+    return 1;
+  }
+  const double axis[3] = {fabs(n[0]) < 0.6 ? 1.0 : 0.0, fabs(n[0]) < 0.6 ? 0.0 : 1.0, 0.0};
+  MathExtra::cross3(n, axis, t[0]);
+  MathExtra::norm3(t[0]);
+  MathExtra::cross3(n, t[0], t[1]);
+  for (int d = 0; d < 3; d++) {
+    t[2][d] = sqrt(0.5) * (t[0][d] + t[1][d]);
+    t[3][d] = sqrt(0.5) * (t[0][d] - t[1][d]);
+  }
+  return 4;
+}
+
+/** Is the region thinner than nodes resolve below this place of its surface, and around it? Of the
+ *  corner of a thick body a line along an axis sees the tip: the body is thick along the normal, or,
+ *  if the corner is sharp, a little further from its tip. */
+bool MPMCrossingLines::is_plate(const double *surface, const double *n) const
+{
+  constexpr double AROUND = 2.0;    // node spacings
+  const double h = field.lattice.h;
+  const auto has = [&](const double *from, double deep) {
+    double at[3];
+    for (int d = 0; d < 3; d++) at[d] = from[d] - deep * h * n[d];
+    return wall.surface->has(at);
+  };
+  const auto is_thick = [&](const double *from) {
+    return has(from, 0.05) && has(from, RESOLVED);
+  };
+  if (is_thick(surface)) return false;
+  double t[4][3], at[3];
+  const int ndirections = directions_along(n, field.lattice.dim, t);
+  for (int k = 0; k < ndirections; k++)
+    for (const double way : {-AROUND * h, AROUND * h}) {
+      for (int d = 0; d < 3; d++) at[d] = surface[d] + way * t[k][d];
+      if (is_thick(at)) return false;
+    }
   return true;
 }
 
@@ -243,19 +291,12 @@ bool MPMCrossingLines::is_narrow(const MPMWallNode &node, const double *x) const
   for (int d = 0; d < 3; d++) middle[d] = x[d] - (node.distance + RESOLVED * h) * n[d];
   bool narrow = false;
   if (match(middle)) {
-    double t[2][3] = {{-n[1], n[0], 0.0}, {0.0, 0.0, 0.0}};
-    if (dim == 3) {
-      const double axis[3] = {fabs(n[0]) < 0.6 ? 1.0 : 0.0, fabs(n[0]) < 0.6 ? 0.0 : 1.0, 0.0};
-      MathExtra::cross3(n, axis, t[0]);
-      MathExtra::norm3(t[0]);
-      MathExtra::cross3(n, t[0], t[1]);
-    }
-    const int ndirections = dim == 3 ? 4 : 1;
+    double t[4][3];
+    const int ndirections = directions_along(n, dim, t);
     for (int k = 0; k < ndirections && !narrow; k++) {
       double side[2][3];
       for (int d = 0; d < 3; d++) {
-        const double along = h * 0.5 * RESOLVED *
-            (k < 2 ? t[k][d] : sqrt(0.5) * (t[0][d] + (k == 2 ? t[1][d] : -t[1][d])));
+        const double along = h * 0.5 * RESOLVED * t[k][d];
         side[0][d] = middle[d] + along;
         side[1][d] = middle[d] - along;
       }

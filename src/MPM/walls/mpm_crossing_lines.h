@@ -41,7 +41,7 @@ struct MPMCrossing : NodeLine {
   bool touched = true;    ///< the surface of the material touches it in this step
   Front front = SOUND;
   bool acts = true;
-  bool in_plate = false;    ///< in a plate thinner than what nodes resolve
+  bool in_plate = false;    ///< in a plate thinner than what nodes resolve, no corner
   bool alone = false;       ///< grips: shares no node with another line
   bool coupled = false;     ///< acts together with others, see MPMCoupledLines
   bool at_edge = false;     ///< nodes act in its place, see MPMWallNodes::hold_at_edges()
@@ -157,6 +157,7 @@ class MPMCrossingLines {
   bool find_surface(const MPMWallNode &, MPMCrossing &, double *x, double &way) const;
   bool find_blade(const MPMWallNode &, MPMCrossing &) const;
   bool is_narrow(const MPMWallNode &, const double *x) const;
+  bool is_plate(const double *surface, const double *normal) const;
   void leave_alone();
   bool decide(const MPMWallContact &, MPMCrossing &);
   bool holds(const MPMCrossing &) const;
