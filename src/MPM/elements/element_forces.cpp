@@ -339,7 +339,8 @@ void ElementForces::find_stretches(ElementBatch &w)
       error->one(
           FLERR,
           "Fix mpm/elements {}: no state without stress across element {} was found at step {}: "
-          "use a smaller time step, or a finer mesh",
+          "use a smaller time step, a finer mesh, or a law such as neohookean (stvenant/kirchhoff "
+          "gives way at large strains)",
           id, (bigint) row[0], update->ntimestep);
 }
 

@@ -26,6 +26,8 @@ static constexpr int SECANT_ITERATIONS = 8, MOST_ITERATIONS = 100;
 // a stress that is no rounding, as part of the stiffness
 static constexpr double BROKEN = 1.0e-8;
 static constexpr int MOST_ATTEMPTS = 4;
+// a stretch that is no state: laws such as stvenant/kirchhoff lose their stress on the way to zero
+static constexpr double NOTHING = 1.0e-5;
 // axes of a surface that has collapsed to a line are those of before
 static constexpr double COLLAPSED = 1.0e-12;
 
@@ -253,7 +255,7 @@ int PlaneStress::iterate(Batch &b, const Point *point)
       if (k > SECANT_ITERATIONS && k % 2 && low[p] > 0.0 && std::isfinite(middle))
         change[p] = middle - s.stretch;
       s.stretch += change[p];
-      s.done = std::fabs(change[p]) <= TOLERANCE * s.stretch;
+      s.done = std::fabs(change[p]) <= TOLERANCE * s.stretch && s.stretch > NOTHING;
       if (!s.done) left = p;    // also if not a number
       before[p] = now[p];
     }
