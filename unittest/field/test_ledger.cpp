@@ -132,8 +132,8 @@ TEST(Force, WorkIsForceTimesPath)
 }
 
 // Water that is put under its weight swings in steps that vary with its compression: the work is
-// the weight times the way of its mass to the middle of the last step, as velocities belong there. With forces along half
-// of the changes of velocities it was -1.8 for 6.5 J, and an alarm was raised.
+// the weight times the way of its mass to the middle of the last step, as velocities belong there.
+// With forces along half of the changes of velocities it was -1.8 for 6.5 J, and an alarm was raised.
 TEST(Force, WorkInStepsThatVary)
 {
   const std::string scene = plane("si", "f f", "0 1 0 1", 1, 0.05) +

@@ -207,7 +207,8 @@ TEST(EnergyWatch, RoundOffOfHeatIsNoGain)
   EXPECT_EQ(told_by(scene).warnings, 0);
 }
 
-// A block gains 5 % of its kinetic energy, 64, while a source heats it by 4000, some 60 times as much
+// A block gains 5 % of its kinetic energy, 64, while a source heats it by 4000, some 60 times as
+// much
 TEST(EnergyWatch, HeatHidesNoGain)
 {
   const std::string scene = space("lj", "p p p", "0 12 0 4 0 4", 1, 0.5) +

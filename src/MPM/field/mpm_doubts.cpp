@@ -80,8 +80,7 @@ static const Doubt table[] = {
     {1.0, 1.0, "no heat goes there before material comes: is it the right region?"},
     {0.5, INF,
      "they are kept from going deeper, but not pushed out: create points outside of it only "
-     "(region "
-     "intersect, with one of side out), or use stick to hold them"},
+     "(region intersect, with one of side out), or use stick to hold them"},
     {1.0, 1.0, "use its keyword gravity, with zeros if it shall have no weight"},
     {1.0, 1.0,
      "it is the divisor of hydraulic conductivities, density times gravity in the units of "

@@ -67,8 +67,8 @@ class MPMDoubts : protected Pointers {
   void check_temperatures(const class MPMField &);
   /** Warns of solids that their own weight presses to nothing. Collective. */
   void check_weight(const class MPMField &);
-  /** Warns of gas that nothing can hold at an end of it: the box is empty there, and no fix is there
-   *  that could press on it. Collective. */
+  /** Warns of gas that nothing can hold at an end of it: the box is empty there, and no fix is
+   *  there that could press on it. Collective. */
   void check_gas(const std::vector<class MPMField *> &);
   /** Warns of points that are in something that keeps points out: which. distance: of x from its
    *  surface, negative inside, far or -far if it is greater or not known. Collective. */

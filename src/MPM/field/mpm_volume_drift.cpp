@@ -57,6 +57,7 @@ static constexpr int CORRECT_EVERY = 30, LOOK_EVERY = 400, LOOK_AT_GAS = 200, LA
 // reaches, the last one may be half full, and round-off must not decide; wider ones: at most .17
 static constexpr double FULL = 0.4, FULL_LINEAR = 0.53;
 static constexpr double HARDLY = 1.0e-3;
+static constexpr double REACH = 2.0;    // of the widest function [node spacings]
 // share of the function of a node in the box that is next to nothing: points hardly sample it
 static constexpr double LITTLE = 0.25;
 static constexpr double MOST_DRIFT = 0.02;    // mean difference of fillings from one: a warning
@@ -127,7 +128,6 @@ double MPMVolumeDrift::part_along(int axis, int node) const
   if (lattice.periodic[axis]) return 1.0;
   const double low = (domain->boxlo[axis] - lattice.origin[axis]) / lattice.h,
                high = (domain->boxhi[axis] - lattice.origin[axis]) / lattice.h;
-  constexpr double REACH = 2.0;    // of the widest function
   if (node >= low + REACH && node <= high - REACH) return 1.0;
   const auto plain = [&](int i) {
     return integral(field.options.shape, high - i) - integral(field.options.shape, low - i);
@@ -154,11 +154,10 @@ double MPMVolumeDrift::part_in_box(int64_t node) const
   return product;
 }
 
-/** Length of the circle around an axis of symmetry on which the part in the box of the function of a
- *  node is, in the mean. */
+/** Length of the circle around an axis of symmetry on which the part in the box of the function of
+ *  a node is, in the mean. */
 double MPMVolumeDrift::mean_circle(int64_t node) const
 {
-  constexpr double REACH = 2.0;    // of the widest function
   constexpr int SLICES = 40;
   int index[3];
   field.grid.node_index(node, index);
@@ -207,7 +206,8 @@ void MPMVolumeDrift::interpolate()
 
 /** Fillings, and in work.nodes the mean velocities of the points around. With an axis of symmetry,
  *  volumes are areas in the plane, of which sums of regular arrays are exact. Rings that have come
- *  to the axis have areas without bounds there, and volumes tell. */
+ *  to the axis have areas without bounds there, and volumes tell. Matter that has opened and bears
+ *  no tension, as after spall, has voids in its volume, which take no room of others. */
 void MPMVolumeDrift::find_filling()
 {
   auto &work = field.work;
@@ -217,7 +217,9 @@ void MPMVolumeDrift::find_filling()
   work.vectors.resize(3 * (std::size_t) atom->nmax);
   work.weights.resize(std::max(work.weights.size(), (std::size_t) atom->nmax));
   each_point(field, [&](const MPMPointMap::Run &, int i) {
-    work.weights[i] = atom->vfrac[i] * field.points->jacobian(i) / frame.circle(places[i][0]);
+    const double *const tau = field.points->tau[i], J = field.points->jacobian(i);
+    const bool is_open = J > 1.0 && tau[0] + tau[1] + tau[2] == 0.0;
+    work.weights[i] = atom->vfrac[i] * (is_open ? 1.0 : J) / frame.circle(places[i][0]);
     if (axis) work.vectors[3 * (std::size_t) i] = frame.circle(places[i][0]);
   });
   const int NREAL = field.pic.nreal;
@@ -336,8 +338,8 @@ void MPMVolumeDrift::find_inside()
 }
 
 /** Mean difference of the pressures of points of gases from the means around them, relative to
- *  these. Of points all of whose nodes are inside, which another interpolation tells, as vectors have
- *  two components in 2d; each counts by its volume. */
+ *  these. Of points all of whose nodes are inside, which another interpolation tells, as vectors
+ *  have two components in 2d; each counts by its volume. */
 void MPMVolumeDrift::find_spread()
 {
   for (std::size_t n = 0; n < fill.size(); n++) {

@@ -278,7 +278,8 @@ void FixMPMRelax::look_for_stall()
         id, LESS * best.ratio, steps, rests, tolerance, what);
 }
 
-/** Less than two points per cell and axis, in bodies whose points come to other cells? Collective. */
+/** Less than two points per cell and axis, in bodies whose points come to other cells?
+ *  Collective. */
 bool FixMPMRelax::has_few_points() const
 {
   constexpr double MOST = 0.6;    // volume of points on average, in cells
@@ -329,8 +330,7 @@ std::string FixMPMRelax::remedy() const
     return "give fix mpm shape linear and fix mpm/dt a fraction of at most 0.35, as stops excite "
            "fast vibrations, or do without walls that move and other physics until bodies rest";
   return "there may be no equilibrium, of a body that nothing holds or that does not bear its "
-         "load; if "
-         "results are near enough, use a larger tolerance";
+         "load; if results are near enough, use a larger tolerance";
 }
 
 /** Of the points of this rank. */

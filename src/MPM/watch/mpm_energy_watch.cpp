@@ -51,8 +51,8 @@ static constexpr double AT_REST =
     1.0e-9;    // cells per step: with less than that nothing is in play
 static constexpr double UNSTRAINED = 1.0e-6;    // stored energy over that after the first step
 static constexpr double ROUND_OFF = 1.0e-13;    // of a sum of the heat of all points in a step
-static constexpr double HEAT_ERROR =
-    1.0e-6;    // of all heat: what steps leave of the work of expansion
+// of all heat: what steps leave of the work of expansion
+static constexpr double HEAT_ERROR = 1.0e-6;
 
 /** The step of 2^bits in which a point is looked at. Multiples of the golden ratio are spread
  *  evenly for any range of IDs, and are no wave through a lattice of points. */
