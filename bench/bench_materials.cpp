@@ -6,8 +6,9 @@
    GNU General Public License, version 2, like LAMMPS itself.
 ------------------------------------------------------------------------- */
 
-// Cost of the constitutive laws: time per point of Material::update (yielding points, or *_elastic), wave_speed
-// and stored_energy on full batches, for each instruction set that this CPU has.
+// Cost of the constitutive laws: time per point of Material::update (yielding points, or
+// *_elastic), wave_speed and stored_energy on full batches, for each instruction set that this CPU
+// has.
 
 #include "material/material_point.h"
 #include "math/matrix.h"

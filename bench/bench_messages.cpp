@@ -1,8 +1,9 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-// What messages between two ranks take: latency and bandwidth of a ping-pong, a sum over ranks, and what a node costs to
-// be put into a message and to be added. The lowest of many, since others may use the machine.
+// What messages between two ranks take: latency and bandwidth of a ping-pong, a sum over ranks, and
+// what a node costs to be put into a message and to be added. The lowest of many, since others may
+// use the machine.
 //
 //   mpirun -np 2 bench_messages
 //

@@ -1,12 +1,13 @@
-// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public License,
-// version 2; see the file LICENSE.
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
 
-// Products with the stiffness that conjugate gradients with SplineMultigrid need for two decades of the residual, from those to 1e-8.
+// Products with the stiffness that conjugate gradients with SplineMultigrid need for two decades of
+// the residual, from those to 1e-8.
 //
 //    bench_solids [largest number of points, 300000]
 //
-// Scenes are those of the page of the developers: points 2^dim per cell of a square or cube that is held at one side, patches with
-// stiffnesses in a ratio, and thin bodies, under their weight.
+// Scenes are those of the page of the developers: points 2^dim per cell of a square or cube that is
+// held at one side, patches with stiffnesses in a ratio, and thin bodies, under their weight.
 
 #include "../unittest/solve/solid_scenes.h"
 

@@ -10,11 +10,11 @@
 // headers alone, so that it works with any version of the package. It prints the number of atoms, a
 // hash of all that a restart file has of each atom, and sums of |x|, |v| and of the rest.
 //
-// The hash is a sum over all numbers of all atoms: it does not depend on the order of the atoms, on the
-// ranks that have them, nor on the order of the numbers of an atom. Zeros do not count, nor do the
-// lengths of an atom's row and of each fix's part of it. A part with a NaN in it counts as one NaN: fix
-// mpm marks so what it does not know of an atom, such as one that is no point of it, and the rest of
-// the part may be anything then.
+// The hash is a sum over all numbers of all atoms: it does not depend on the order of the atoms, on
+// the ranks that have them, nor on the order of the numbers of an atom. Zeros do not count, nor do
+// the lengths of an atom's row and of each fix's part of it. A part with a NaN in it counts as one
+// NaN: fix mpm marks so what it does not know of an atom, such as one that is no point of it, and
+// the rest of the part may be anything then.
 
 #include "atom.h"
 #include "atom_vec.h"

@@ -7,9 +7,11 @@
 ------------------------------------------------------------------------- */
 
 /* ----------------------------------------------------------------------
-   What HYPRE takes for the pressure of a column of water in the corner of a tank: N/2 by N by 3N/4 cells, with walls on four sides and free
-   surfaces on the two others, by conjugate gradients with BoomerAMG (HMIS, extended interpolation of up to 4 entries, aggressive coarsening on
-   the first level) to 1e-9, from a matrix that is there. Compare with a step of fix mpm/incompressible in the same scene.
+   What HYPRE takes for the pressure of a column of water in the corner of a tank: N/2 by N by 3N/4
+   cells, with walls on four sides and free surfaces on the two others, by conjugate gradients with
+   BoomerAMG (HMIS, extended interpolation of up to 4 entries, aggressive coarsening on the first
+   level) to 1e-9, from a matrix that is there. Compare with a step of fix mpm/incompressible in the
+   same scene.
 
      mpicxx -O2 bench/flow/hypre.cpp -o hypre -I/usr/include/hypre -lHYPRE && ./hypre 64
 ------------------------------------------------------------------------- */

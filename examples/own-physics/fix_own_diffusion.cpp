@@ -94,7 +94,8 @@ void FixOwnDiffusion::add_stages(MPMPlan &plan, MPMPlan::Place place)
 }
 
 /* ----------------------------------------------------------------------
-   value c_i = sum_p m_p N_ip [c_p + g_p (x_i - x_p)] / m_i, and its rate m_i dc_i/dt = -sum_p m_p D grad c . grad N_ip
+   value c_i = sum_p m_p N_ip [c_p + g_p (x_i - x_p)] / m_i, and its rate m_i dc_i/dt =
+   -sum_p m_p D grad c . grad N_ip
 ------------------------------------------------------------------------- */
 
 void FixOwnDiffusion::scalar_to_nodes(MPMField &field)

@@ -194,7 +194,8 @@ SERIAL_PARAMETER_TEST(WaterOnPlate, PressureIsThatOfItsDepth, Coupling,
   EXPECT_LT(std::fabs(measured("deflection", e.deflection)), 0.015);
 }
 
-// That plate is a beam, but for the sections at the clamps, which do not stay plane in such a thick one
+// That plate is a beam, but for the sections at the clamps, which do not stay plane in such a thick
+// one
 
 SERIAL_TEST(WaterOnPlate, PlateAloneIsABeam)
 {

@@ -53,8 +53,8 @@ static Soup disk(int n)
 
 static const std::string floor_with = "fix floor all mpm/boundary zlo ";
 
-// A ball that falls rises to e^2 of its height, and as often as it likes. Energy is that lost by the
-// work of the floor.
+// A ball that falls rises to e^2 of its height, and as often as it likes. Energy is that lost by
+// the work of the floor.
 SERIAL_TEST(RigidCollision, OfABallWithAFloor)
 {
   const ScratchFile file("ball.stl", text_of(ball(0.5, 2)));
@@ -259,8 +259,8 @@ SERIAL_TEST(RigidCollision, RegionsAreWalls)
     }
 }
 
-// Walls that move: a region that rises lifts a block, which then has its velocity; a belt drags it by
-// mu g until it has the speed of the belt; a wall that comes hits it with e
+// Walls that move: a region that rises lifts a block, which then has its velocity; a belt drags it
+// by mu g until it has the speed of the belt; a wall that comes hits it with e
 SERIAL_TEST(RigidCollision, WallsMove)
 {
   const ScratchFile file("cube.stl", text_of(cube()));
@@ -334,8 +334,8 @@ SERIAL_TEST(RigidCollision, WallsHoldAPlateAgainstMaterial)
   }
 }
 
-// A body at a plane of symmetry goes through it where it is held; one that begins inside of a wall is
-// told, and comes out of it at rest
+// A body at a plane of symmetry goes through it where it is held; one that begins inside of a wall
+// is told, and comes out of it at rest
 SERIAL_TEST(RigidCollision, SymmetryAndOverlap)
 {
   const ScratchFile balls("ball.stl", text_of(ball(1.5, 2))), cubes("cube.stl", text_of(cube(3.0)));

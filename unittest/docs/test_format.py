@@ -37,6 +37,15 @@ def test_files_are_formatted():
         sorted(set(re.findall(r"^(\S+?):\d+:", result.output, re.M))))
 
 
+def test_lines_end_at_100_columns():
+    """clang-format leaves comments as they are"""
+    long = [f"{os.path.relpath(path, mt.ROOT)}:{number}" for folder in ("src", "unittest", "bench", "examples")
+            for path in sorted(glob.glob(os.path.join(mt.ROOT, folder, "**", "*.[hc]*"), recursive=True))
+            if path.endswith((".h", ".cpp"))
+            for number, line in enumerate(open(path), 1) if len(line.rstrip("\n")) > 100]
+    assert not long, "\n".join(long)
+
+
 def test_ids_have_their_own_mpi_types():
     """IDs, image flags and counts of atoms have 32 or 64 bits: MPI_LMP_TAGINT and its like"""
     wrong = [path + ": " + line for path in glob.glob(os.path.join(mt.ROOT, "src", "MPM", "*", "*.cpp"))

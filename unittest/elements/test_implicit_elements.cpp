@@ -110,9 +110,9 @@ SERIAL_TEST(Truss, SnapsThrough)
   }
 }
 
-// a strip of one element that walls pull so far, in one step, that its law may have no state without
-// stress across: fix mpm/implicit sees this when it tries the motion, and says so, and the element
-// is not asked for the stress of a motion that it does not have
+// a strip of one element that walls pull so far, in one step, that its law may have no state
+// without stress across: fix mpm/implicit sees this when it tries the motion, and says so, and the
+// element is not asked for the stress of a motion that it does not have
 SERIAL_TEST(Strip, HasNoStateWhenWallsPullItFar)
 {
   const ScratchFile file("bar", gmsh(1, {{-1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {{0, 1}}));

@@ -438,7 +438,8 @@ SERIAL_TEST(ThinElements, HenckysMembraneAtAnyAngle)
 
 // surfaces and cables have the waves of plane stress: for rubber their time step is not that of its
 // compression. At the limit they shake for 1000 steps and do not gain energy, free and, with rims
-// that are held, stretched by 3 along all axes, where the limit by moduli at rest is 1.5 times too long
+// that are held, stretched by 3 along all axes, where the limit by moduli at rest is 1.5 times too
+// long
 SERIAL_TEST(ThinElements, TimeStepOfRubber)
 {
   const struct {
@@ -675,8 +676,8 @@ SERIAL_TEST(Airbag, MylarBalloon)
   EXPECT_NEAR(measured("volume", run.evaluate("f_b[2]") / pow(A, 3)) / 1.2185242, 1.0, 0.015);
 }
 
-/** Gas as material points in a balloon on the same lattice (V1, 3000 Pa against nothing, adiabatic),
- *  around this place. */
+/** Gas as material points in a balloon on the same lattice (V1, 3000 Pa against nothing,
+ *  adiabatic), around this place. */
 static std::string balloon_with_points(const std::string &file, const std::string &place)
 {
   return MPM_TEST::box(3, "si", "f f f", "-0.2 0.2 -0.2 0.2 -0.2 0.2", 2, 0.0125) +
@@ -910,8 +911,8 @@ TEST(ThinElements, RanksAndRestart)
   }
 }
 
-// the rows of the restart file take the place of those of the mesh before the limit of the time step
-// is known; both together were twice as stiff in bending
+// the rows of the restart file take the place of those of the mesh before the limit of the time
+// step is known; both together were twice as stiff in bending
 TEST(ThinElements, StepOfBendingAfterARestart)
 {
   ScratchFile file("bent.msh", sheet(8, 0.4, true));

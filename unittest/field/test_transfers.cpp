@@ -64,8 +64,8 @@ TEST(Rows, OfABatchEndWhereTheMemoryDoes)
   }
 }
 
-// functions of GIMP in a regular array end in planes of nodes: whether round-off gives these nodes a
-// mass does not matter
+// functions of GIMP in a regular array end in planes of nodes: whether round-off gives these nodes
+// a mass does not matter
 TEST(Gimp, RoundOffAtPlanesOfNodes)
 {
   const auto run = [](double origin) {

@@ -104,8 +104,8 @@ SERIAL_TEST(Units, IsReleased)
   }
 }
 
-// a spin is shared with water at rest by the moments of inertia, that of the body and the added one,
-// which does not depend on its density; near that of an ellipse, pi rho (a^2 - b^2)^2/8
+// a spin is shared with water at rest by the moments of inertia, that of the body and the added
+// one, which does not depend on its density; near that of an ellipse, pi rho (a^2 - b^2)^2/8
 SERIAL_TEST(Body, SharesItsSpin)
 {
   constexpr double a = 0.2, b = 0.05;

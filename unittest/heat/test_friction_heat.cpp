@@ -314,8 +314,8 @@ SERIAL_PARAMETER_TEST(Wall, IsInsulator, const char *,
   EXPECT_NEAR(some[17] / -some[6], 0.25, 1e-12);
 }
 
-// only the motion relative to the wall counts: a block that slides on a wall at rest, a wall that slides under a
-// block at rest, and both by halves make the same heat, that of the law of Coulomb
+// only the motion relative to the wall counts: a block that slides on a wall at rest, a wall that
+// slides under a block at rest, and both by halves make the same heat, that of the law of Coulomb
 SERIAL_PARAMETER_TEST(WallThatMoves, HeatsAlike, const char *,
                       Values("ylo separate", "ylo slip", "region below separate"))
 {

@@ -192,7 +192,8 @@ SERIAL_TEST(HalfSpaces, FacesInLongSteps)
   }
 }
 
-// perfect contact, faster than the limit of a step: 1/3 at once, and errors that go away with the spacing
+// perfect contact, faster than the limit of a step: 1/3 at once, and errors that go away with the
+// spacing
 SERIAL_TEST(Perfect, IsTheLimit)
 {
   for (const double shift : {0.0, 0.25, 0.5}) {

@@ -46,8 +46,8 @@ SERIAL_TEST(Sliding, WarmsBoth)
 {
   Scene run(sliding() + "run 0\n");
   const double M = run.evaluate("mass(two)"), y = run.evaluate("xcm(two,y)");
-  // the power of friction is that of the start of a step, and the work of its force that of the mean
-  // velocity: 0.0044 of it is missing with steps of 0.005
+  // the power of friction is that of the start of a step, and the work of its force that of the
+  // mean velocity: 0.0044 of it is missing with steps of 0.005
   run.commands("timestep 0.00125\nrun 1200\n");
   const double *const e = run.compute_vector();
   const double made = e[17], left = e[0] + e[1] - e[8] - e[9] + run.evaluate("pe*atoms"),

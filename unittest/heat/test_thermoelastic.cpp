@@ -647,9 +647,9 @@ TEST(Gas, OfAnotherSpecificHeatIsSaid)
   EXPECT_EQ(said(3.0, 0.0), 1u);
 }
 
-/** Stress at the distance x from the surface of a half space that is at the temperature 1 from t = 0
- *  on, in units in which density, modulus, diffusivity, and the stress of a unit of temperature are
- *  1 (V.I. Danilovskaya, Prikl. Mat. Mekh. 14 (1950) 316). */
+/** Stress at the distance x from the surface of a half space that is at the temperature 1 from t =
+ *  0 on, in units in which density, modulus, diffusivity, and the stress of a unit of temperature
+ *  are 1 (V.I. Danilovskaya, Prikl. Mat. Mekh. 14 (1950) 316). */
 static double thermal_shock(double x, double t)
 {
   const double s = std::sqrt(t), behind = t > x ? std::exp(t - x) : 0.0;
@@ -701,8 +701,8 @@ SERIAL_PARAMETER_TEST(HalfSpace, ThermalShock, const char *, Values("every 1", "
   EXPECT_LT(most, exact);
 }
 
-/** A free disk of radius 1, warmer by 1 - r^2, in plane strain: the largest error of the hoop stress
- *  within 1.5 spacings of its rim, relative to that at the rim, E alpha/(2 (1 - nu)) (S.P.
+/** A free disk of radius 1, warmer by 1 - r^2, in plane strain: the largest error of the hoop
+ *  stress within 1.5 spacings of its rim, relative to that at the rim, E alpha/(2 (1 - nu)) (S.P.
  *  Timoshenko, J.N. Goodier, Theory of Elasticity (1970), 151), and that of all other points. */
 static std::array<double, 2> errors_of_heated_disk(double h, const std::string &options)
 {

@@ -723,8 +723,8 @@ TEST(Implicit, RanksWithMovingWallsAndPeriodicFaces)
 }
 
 // Functions that end in a plane of nodes reach these nodes or not, as round-off decides, and a node
-// of no mass would still make the stress next to it zero. So it must be left alone: a block that has
-// been moved by a few units in the last place has the same stresses
+// of no mass would still make the stress next to it zero. So it must be left alone: a block that
+// has been moved by a few units in the last place has the same stresses
 
 struct Ends {
   const char *shape;

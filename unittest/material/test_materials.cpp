@@ -619,8 +619,8 @@ TEST(Start, LawsBehindOthersHaveTheirState)
   }
 }
 
-// with the share xi of damping central differences are stable in steps of sqrt(1 + xi^2) - xi of those without
-// (Belytschko, Liu, Moran, Nonlinear Finite Elements, 6.6)
+// with the share xi of damping central differences are stable in steps of sqrt(1 + xi^2) - xi of
+// those without (Belytschko, Liu, Moran, Nonlinear Finite Elements, 6.6)
 TEST(Viscosity, ArtificialShortensTheStep)
 {
   Point plain("density 1000 eos linear 1e9", 1, 0.01);

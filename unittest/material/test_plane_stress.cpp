@@ -67,8 +67,8 @@ TEST(PlaneStress, Balloon)
   }
 }
 
-// stvenant/kirchhoff stretched alike along both axes: 1 - c^2 = 2 nu/(1 - nu) (a^2 - 1). There is no
-// such c from some a on, but its stress vanishes with c, and states of c = 1e-8 were taken
+// stvenant/kirchhoff stretched alike along both axes: 1 - c^2 = 2 nu/(1 - nu) (a^2 - 1). There is
+// no such c from some a on, but its stress vanishes with c, and states of c = 1e-8 were taken
 TEST(PlaneStress, WithoutAnyState)
 {
   for (const double nu : {0.3, 0.45})
@@ -262,8 +262,8 @@ TEST(PlaneStress, Refuses)
             std::string::npos);
 }
 
-/** rho_0 c^2 of the fastest wave along a body in this state: derivatives of its stress by any l = m n^T
- *  with unit vectors m and n along it, or its tension, which is that of a string. */
+/** rho_0 c^2 of the fastest wave along a body in this state: derivatives of its stress by any l = m
+ *  n^T with unit vectors m and n along it, or its tension, which is that of a string. */
 double fastest(Surface &s, const Matrix &F)
 {
   constexpr double STEP = 1e-5;

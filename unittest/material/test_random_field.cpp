@@ -136,8 +136,9 @@ TEST_F(Random, MomentsAndCorrelation)
   for (int d = 0; d < 4; d++)
     for (double c : pair[d]) EXPECT_NEAR(c, std::exp(-distance[d] * distance[d]), 1.5 * e);
 
-  // three times as many values along each axis: the squares of neighbors correlate by exp(-2 (1.05)^2),
-  // of all neighbors of a value in sum by 0.83, which leaves 1/1.83 of them as independent values
+  // three times as many values along each axis: the squares of neighbors correlate by exp(-2
+  // (1.05)^2), of all neighbors of a value in sum by 0.83, which leaves 1/1.83 of them as
+  // independent values
   const int dense = 3 * side;
   double variance = 0.0;
   for (int i = 0; i < dense * dense * dense; i++) {

@@ -137,8 +137,8 @@ TEST(SurfaceMesh, TouchesEachPartOnce)
                {{-0.2, -0.1, 1.2}, 1.5, {{0.3, {0.0, 0.0, 1.0}}}},
                {{-0.2, 2.0, 0.5}, 0.1, {}}};
   for (const auto &c : cases) {
-    SurfaceMesh::Touch list[6];
-    const int n = mesh.touches(c.x, c.cutoff, list, 6);
+    SurfaceMesh::ClosestPoint list[6];
+    const int n = mesh.closest_points(c.x, c.cutoff, list, 6);
     ASSERT_EQ(n, (int) c.expected.size()) << c.x[0] << " " << c.x[1] << " " << c.x[2];
     for (int i = 0; i < n; i++) {
       EXPECT_NEAR(list[i].distance, c.expected[i].first, 1.0e-12);
@@ -455,7 +455,8 @@ static MPM_NS::SurfaceOptions open_surface()
   return options;
 }
 
-// Behind a plane, and beyond its rim, the side is that of the plane; behind a ridge, of both planes.
+// Behind a plane, and beyond its rim, the side is that of the plane; behind a ridge, of both
+// planes.
 SERIAL_TEST(OpenSurface, GoesOnBeyondItsRim)
 {
   const double slope = 0.75;    // normal (-.6, 0, .8)

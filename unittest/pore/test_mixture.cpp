@@ -766,8 +766,8 @@ TEST(Slump, IsTheSameOnAnyNumberOfRanksAndAfterARestart)
     }
 }
 
-// a wall that holds the soil and not the water at a node changes what drag does there: the balance of
-// energy has this, also where bodies begin inside of a wall
+// a wall that holds the soil and not the water at a node changes what drag does there: the balance
+// of energy has this, also where bodies begin inside of a wall
 SERIAL_TEST(Slump, LedgerHasDragAtWalls)
 {
   const std::string slip = "fix floor all mpm/boundary ylo slip\n";

@@ -107,7 +107,8 @@ TEST(Wall, LeaksAreTold)
   }
 }
 
-// and where they are: the only plane of nodes in this wall is in its middle, and the first of them at 0
+// and where they are: the only plane of nodes in this wall is in its middle, and the first of them
+// at 0
 TEST(Wall, PlaceOfALeak)
 {
   const auto said = lines_that_say(leaking(true, 0.05), "so thin that heat leaks through it");

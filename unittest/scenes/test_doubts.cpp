@@ -479,8 +479,8 @@ SERIAL_TEST(Doubts, PointsMovedBetweenRuns)
             0);
 }
 
-// round bodies that roll where friction acts turn too slowly: as polygons, if they are of whole points,
-// and by the place of the normal force, if friction times radius is less than 1.5 spacings
+// round bodies that roll where friction acts turn too slowly: as polygons, if they are of whole
+// points, and by the place of the normal force, if friction times radius is less than 1.5 spacings
 SERIAL_TEST(Doubts, RoundBodiesThatRoll)
 {
   const auto messages = [](const std::string &points, const std::string &wall, double spin,

@@ -346,7 +346,8 @@ SERIAL_TEST(RestartFile, HasStatesOfTheRightSize)
   EXPECT_EQ(nstates, 5);    // mpm, two materials, boundary, dt
 }
 
-// bytes that have changed on a disk are seen, in each state of a fix, and in what belongs to a point
+// bytes that have changed on a disk are seen, in each state of a fix, and in what belongs to a
+// point
 SERIAL_TEST(RestartFile, DamageIsSeen)
 {
   const ScratchFile file("whole.bin");

@@ -191,9 +191,9 @@ static std::pair<double, double> pile(const std::string &kind, double R, double 
 }
 
 // A circular footing on Tresca's clay: 5.69 (smooth) and 6.05 (rough) at the surface (R.T. Shield,
-// Proc. R. Soc. London A 233 (1955) 267; A.D. Cox, G. Eason, H.G. Hopkins, Phil. Trans. R. Soc. A 254
-// (1961) 1), and more below it, for the radius of the nodes that it holds. When it passes a plane of
-// nodes, the load stays. Before, it fell by 40 %
+// Proc. R. Soc. London A 233 (1955) 267; A.D. Cox, G. Eason, H.G. Hopkins, Phil. Trans. R. Soc. A
+// 254 (1961) 1), and more below it, for the radius of the nodes that it holds. When it passes a
+// plane of nodes, the load stays. Before, it fell by 40 %
 SERIAL_PARAMETER_TEST(Pile, ForceDoesNotJumpAtPlanesOfNodes, const char *, Values("slip", "stick"))
 {
   for (const double R : {0.5, 0.47}) {
@@ -294,8 +294,8 @@ SERIAL_TEST(ThinRegions, AreReported)
   EXPECT_FALSE(told(lower, "prism 0.7 1.3 0.1 0.41 -1 1 0.3 0 0", "separate"));
 }
 
-/** Is a region reported in a block that does not have its place? Its faces are planes through places
- *  (x, y) with the angles of their normals (degrees). */
+/** Is a region reported in a block that does not have its place? Its faces are planes through
+ *  places (x, y) with the angles of their normals (degrees). */
 static bool is_told_of(const std::vector<std::array<double, 3>> &planes, const std::string &kind)
 {
   const auto intersection = [&](const char *name, const std::string &side) {
@@ -540,6 +540,73 @@ TEST(Surfaces, OfUnionsAndIntersections)
                       EXPECT_NEAR(-side * d, exact, 1.0e-13);
                   });
   }
+}
+
+// Where places of single parts are hidden by others, the nearest surface is an edge or a corner:
+// the circle in which two balls meet, outside of their intersection and inside of their union; the
+// ridge between two planes; the corner of three
+TEST(Surfaces, EdgesBetweenParts)
+{
+  constexpr double far = 100.0, at = -0.105;
+  const double radius = std::sqrt(1.0 - 0.395 * 0.395);
+  const double centers[] = {-0.5, 0.5}, radii[] = {1.0, 1.1};
+  const std::string balls = "region a sphere -0.5 0 0 1\nregion b sphere 0.5 0 0 1.1\n";
+  for (const bool joined : {true, false}) {
+    int edges = 0;
+    each_distance(balls + "region it " + (joined ? "union" : "intersect") + " 2 a b\n",
+                  [&](const double *x, double d) {
+                    const double side = joined ? -1.0 : 1.0;    // of the places that are looked at
+                    double exact = -1.0, deepest = -1.0;
+                    for (int k = 0; k < 2; k++) {
+                      const double height = side * ball(x, centers[k], radii[k]);
+                      deepest = std::max(deepest, height);
+                      const double scale = radii[k] / (ball(x, centers[k], radii[k]) + radii[k]);
+                      const double place[] = {centers[k] + scale * (x[0] - centers[k]),
+                                              scale * x[1], scale * x[2]};
+                      if (height > 0.0 && side * ball(place, centers[1 - k], radii[1 - k]) < 0.0)
+                        exact = height;
+                    }
+                    if (deepest <= 0.0 || std::hypot(x[1], x[2]) < 1.0e-6) return;
+                    if (exact < 0.0) {
+                      edges++;
+                      exact = std::hypot(x[0] - at, std::hypot(x[1], x[2]) - radius);
+                    }
+                    EXPECT_NEAR(side * d, exact, 1.0e-6) << x[0] << " " << x[1] << " " << x[2];
+                  });
+    EXPECT_GT(edges, joined ? 20 : 300);
+  }
+
+  const double c = std::sqrt(0.5);
+  each_distance("region a plane 0 0 0 -1 0 -1\nregion b plane 0 0 0 1 0 -1\n"
+                "region it intersect 2 a b\n",
+                [&](const double *x, double d) {    // below z = -|x|
+                  const double up = c * (std::fabs(x[0]) + x[2]);
+                  const double edge = std::hypot(x[0], x[2]);
+                  const double exact = x[2] > std::fabs(x[0]) ? edge : up;
+                  EXPECT_NEAR(d, exact, 1.0e-6) << x[0] << " " << x[2];
+                });
+  each_distance(
+      "region a plane 0 0 0 1 0 0\nregion b plane 0 0 0 0 1 0\nregion c plane 0 0 0 0 0 1\n"
+      "region it intersect 3 a b c\n",
+      [&](const double *x, double d) {
+        double square = 0.0;
+        for (int k = 0; k < 3; k++) square += std::pow(std::min(x[k], 0.0), 2);
+        if (square > 0.0) EXPECT_NEAR(d, std::sqrt(square), 1.0e-6);
+      });
+  // what is nearer than the limit is found, and nothing else
+  Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") +
+            "region a plane 0 0 0 -1 0 -1\nregion b plane 0 0 0 1 0 -1\n"
+            "region it intersect 2 a b\n");
+  run.lmp->init();
+  const MPMRegionSurface ridge(run.lmp->domain->get_region_by_id("it"), 3);
+  const double x[] = {0.1, 0.3, 0.5};
+  const double exact = std::hypot(0.1, 0.5);
+  EXPECT_NEAR(ridge.distance(x, 1.01 * exact), exact, 1.0e-8);
+  EXPECT_EQ(ridge.distance(x, 0.99 * exact), 0.99 * exact);
+  double n[3];
+  ridge.normal(x, far, 1.0e-5, n);
+  EXPECT_NEAR(n[0], 0.1 / exact, 1.0e-6);
+  EXPECT_NEAR(n[2], 0.5 / exact, 1.0e-6);
 }
 
 TEST(Surfaces, OfSharpCones)

@@ -595,8 +595,8 @@ TEST(FractureWatch, IsSilentWhereNothingBreaks)
   EXPECT_EQ(told_by(0.35, "", SOFT, -0.1).warnings, 0);    // pressed together
 }
 
-// Two elastic disks of eight cells collide. With the default, transfers take more than half of their
-// energy, which is said; with others, or where there are loads, nothing is said.
+// Two elastic disks of eight cells collide. With the default, transfers take more than half of
+// their energy, which is said; with others, or where there are loads, nothing is said.
 TEST(EnergyWatch, TellsWhatTransfersTake)
 {
   const auto warnings = [](const std::string &transfer, const std::string &more = "") {

@@ -184,8 +184,8 @@ int AtomVecMPM::unpack_exchange_bonus(int i, double *buf)
   return MPMPoints::size;
 }
 
-// Each atom has a checksum behind what LAMMPS and the fixes write of it. Not in a hybrid style, which
-// writes atoms itself.
+// Each atom has a checksum behind what LAMMPS and the fixes write of it. Not in a hybrid style,
+// which writes atoms itself.
 
 /** Of all but the length and the image flags, which keyword remap of read_restart changes first. */
 static double checksum_of_record(const double *buf, int n)
@@ -276,9 +276,9 @@ static bool any_deformed(Atom *atom)
   return false;
 }
 
-/** Mass to density for AtomVec::pack_data(). It is called for each atom of a rank by itself, so that
- *  the first rank speaks for its own points alone. After a sphere style, rmass is mass / (volume of the
- *  sphere), and radius the diameter. */
+/** Mass to density for AtomVec::pack_data(). It is called for each atom of a rank by itself, so
+ *  that the first rank speaks for its own points alone. After a sphere style, rmass is mass /
+ *  (volume of the sphere), and radius the diameter. */
 void AtomVecMPM::pack_data_pre(int ilocal)
 {
   rmass_one = rmass[ilocal];

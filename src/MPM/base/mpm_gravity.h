@@ -76,7 +76,8 @@ class MPMGravity {
   std::vector<Fix *> fixes;
   bool evaluated = false;
 
-  /** LAMMPS evaluates the variables of fix gravity when it adds its forces, which may come later. */
+  /** LAMMPS evaluates the variables of fix gravity when it adds its forces, which may come
+   *  later. */
   void evaluate()
   {
     evaluated = true;

@@ -43,8 +43,8 @@ class MPMSetUp {
     known = true;
   }
   /** Start of a step: stops if there was no set-up, as there is none after the end of a run within
-   *  another one, or if fixes of this package have been defined or deleted since then, as run ... pre
-   *  no would use what is gone, and leave out what is new. who: the fix that asks. */
+   *  another one, or if fixes of this package have been defined or deleted since then, as run ...
+   *  pre no would use what is gone, and leave out what is new. who: the fix that asks. */
   void check(LAMMPS *lmp, const std::string &who) const
   {
     const Update &update = *lmp->update;

@@ -410,7 +410,7 @@ void FixMPMRigid::warn_of_faces()
 MPMRigidMember FixMPMRigid::begin_step(double dt)
 {
   MPMRigidMember member = {
-      id, *this, contact, told, {v[0], v[1], v[2], omega[0], omega[1], omega[2]}};
+      id, *this, contact, warned_of_depth, {v[0], v[1], v[2], omega[0], omega[1], omega[2]}};
   dt_last = dt;
   std::fill_n(collision, 6, 0.0);
   load_impulse(dt);

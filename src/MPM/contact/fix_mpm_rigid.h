@@ -99,7 +99,7 @@ class FixMPMRigid :
  private:
   double first[3];    // center of the body in the region
   MPMRigidContact contact;
-  bool warned_of_faces = false, told = false;
+  bool warned_of_faces = false, warned_of_depth = false;
   bool weight_given = false;    // is there the keyword gravity?
   MPMDoubts doubts;
 

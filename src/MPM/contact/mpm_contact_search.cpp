@@ -46,8 +46,8 @@ using namespace MPM_NS;
 
 static constexpr double ROUNDING = 1.0e-8, BOX_ROUNDING = 1.0e-3;
 
-// a gradient below this share of that of the other body counts in proportion to its length: at nodes
-// inside of a body it is round-off, and has no direction
+// a gradient below this share of that of the other body counts in proportion to its length: at
+// nodes inside of a body it is round-off, and has no direction
 
 static constexpr double FLAT = 1.0e-3;
 

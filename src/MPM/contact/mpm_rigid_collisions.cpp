@@ -323,8 +323,8 @@ void MPMRigidCollisions::add(int k, int o, const Near &near)
 void MPMRigidCollisions::tell(const MPMRigidMember &member, const MPMObstacle &obstacle,
                               double depth) const
 {
-  if (member.told) return;
-  member.told = true;
+  if (member.warned_of_depth) return;
+  member.warned_of_depth = true;
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm/rigid {}: the body is {:.3g} node spacings inside of {} at step {}, "

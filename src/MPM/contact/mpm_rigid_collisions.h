@@ -26,9 +26,9 @@ struct MPMRigidMember {
   const char *id;    ///< of its fix
   MPMRigidOptions &body;
   MPMRigidContact &contact;
-  bool &told;              ///< has it been said that the body is deep in something?
-  double old[6];           ///< velocity and angular velocity at the start of the step
-  double shift[6] = {};    ///< out of what it is in, besides its motion [distance, angle]
+  bool &warned_of_depth;    ///< has it been said that the body is deep in something?
+  double old[6];            ///< velocity and angular velocity at the start of the step
+  double shift[6] = {};     ///< out of what it is in, besides its motion [distance, angle]
 };
 
 /** Collisions of rigid bodies with walls and with each other.

@@ -300,7 +300,8 @@ bool CreatePoints::same_body(int i) const
   return !in_field && atom->type[i] == type;
 }
 
-/** Is x in the region, and not on its surface? Regions that touch have their common surface both. */
+/** Is x in the region, and not on its surface? Regions that touch have their common surface
+ *  both. */
 bool CreatePoints::is_inside(const double *x) const
 {
   if (!region) return true;

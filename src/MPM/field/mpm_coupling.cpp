@@ -117,7 +117,7 @@ void MPMUncoupled::find_pairs()
   const int n = (int) list.size();
   for (int a = 0; a < n; a++)
     for (int b = a + 1; b < n; b++)
-      if (!told.count({list[a].ids[0], list[b].ids[0]}) && !are_coupled(list[a], list[b]))
+      if (!warned.count({list[a].ids[0], list[b].ids[0]}) && !are_coupled(list[a], list[b]))
         pairs.push_back({a, b});
 }
 
@@ -150,10 +150,10 @@ void MPMUncoupled::compare()
     }
     return true;
   };
-  const auto is_told = [&](const std::array<int, 2> &pair) {
+  const auto is_known = [&](const std::array<int, 2> &pair) {
     const Matter &a = list[pair[0]], &b = list[pair[1]];
     if (!meet(pair[0], pair[1])) return false;
-    told.insert({a.ids[0], b.ids[0]});
+    warned.insert({a.ids[0], b.ids[0]});
     if (comm->me == 0)
       error->warning(
           FLERR,
@@ -162,7 +162,7 @@ void MPMUncoupled::compare()
           a.fix->id, a.fix->style, b.fix->id, b.fix->style, remedy(a, b));
     return true;
   };
-  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_told), pairs.end());
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), is_known), pairs.end());
 }
 
 /** What makes them feel each other. */

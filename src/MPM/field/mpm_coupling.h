@@ -66,7 +66,7 @@ class MPMUncoupled : protected Pointers {
   };
   std::vector<Matter> list;
   std::vector<std::array<int, 2>> pairs;                 // that nothing couples
-  std::set<std::pair<std::string, std::string>> told;    // IDs
+  std::set<std::pair<std::string, std::string>> warned;    // IDs
   const Fix *mine = nullptr;
   bool is_new = false;    // in this run
   int countdown = 0;

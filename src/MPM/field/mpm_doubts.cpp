@@ -95,8 +95,8 @@ static const Doubt table[] = {
 void MPMDoubts::check(Kind kind, double ratio, const std::string &who, const std::string &what)
 {
   const Doubt &doubt = table[kind];
-  if (told >> kind & 1 || !(ratio >= doubt.low && ratio <= doubt.high)) return;
-  told |= 1u << kind;
+  if (warned >> kind & 1 || !(ratio >= doubt.low && ratio <= doubt.high)) return;
+  warned |= 1u << kind;
   if (comm->me == 0) error->warning(FLERR, "{}: {}: {}", who, what, doubt.text);
 }
 
@@ -130,7 +130,7 @@ void MPMDoubts::check_regions()
         return image_shift(*domain, *other, d) == -shift &&
             fabs(at_low_end(*other, d) - at_low_end(*region, d) - shift) < least;
       });
-      if (has_image || !told_of.insert(region->id).second || comm->me) continue;
+      if (has_image || !warned_of.insert(region->id).second || comm->me) continue;
       error->warning(FLERR,
                      "Region {} reaches across the periodic face {}{}, and has no image at the "
                      "other end of the box: there it is no wall, body, or surface; {} shifted by "

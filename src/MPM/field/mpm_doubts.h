@@ -22,8 +22,8 @@ class Material;
 
 namespace LAMMPS_NS {
 
-/** What an input may say, but hardly means. All such doubts are in one table: each is a ratio of two
- *  numbers of the input, with the range that is doubtful, as ranges of single numbers depend on
+/** What an input may say, but hardly means. All such doubts are in one table: each is a ratio of
+ *  two numbers of the input, with the range that is doubtful, as ranges of single numbers depend on
  *  units and scales. A fix that has the numbers has an object of this class, and gives a warning of
  *  each kind once. */
 class MPMDoubts : protected Pointers {
@@ -54,11 +54,12 @@ class MPMDoubts : protected Pointers {
   /** Warns, unless it has before, if this ratio is doubtful. who: the start of the message; what:
    *  the two numbers. The same on all ranks. */
   void check(Kind, double ratio, const std::string &who, const std::string &what);
-  /** Warns of a time step that no command has set, of a solver that has no explicit limit with which
-   *  it could be compared. */
+  /** Warns of a time step that no command has set, of a solver that has no explicit limit with
+   *  which it could be compared. */
   void check_time_step(const std::string &who);
   /** Warns of regions across periodic faces: they have no images, so that walls, surfaces, and
-   *  bodies that they describe end there. A region that is the image of another one is the remedy. */
+   *  bodies that they describe end there. A region that is the image of another one is the
+   *  remedy. */
   void check_regions();
   /** Once in each step: the same for regions that move, from time to time. */
   void look_at_regions();
@@ -79,8 +80,8 @@ class MPMDoubts : protected Pointers {
  private:
   static constexpr int STEPS = 16;    // from one look to the next
   int countdown = 0;
-  unsigned told = 0;                // bits of kinds
-  std::set<std::string> told_of;    // IDs of regions
+  unsigned warned = 0;                // bits of kinds
+  std::set<std::string> warned_of;    // IDs of regions
 };
 
 /** Is it a gas whose pressure is absolute, eos ideal/gas? */

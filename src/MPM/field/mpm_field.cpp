@@ -44,7 +44,8 @@ using namespace MPM_NS;
 
 // node numbers of an axis, and those of blocks, must fit into 21 bits with their sign
 static constexpr double MAX_NODE = 4.0e6;
-// mass of a node over that of a full cell; functions that end in its plane give it 1e-32 by round-off
+// mass of a node over that of a full cell; functions that end in its plane give it 1e-32 by
+// round-off
 static constexpr double NEGLIGIBLE = 1.0e-20;
 
 static MPM_NS::Lattice lattice_of(const Domain &domain, double h, const MPMFieldOptions &options)
@@ -310,6 +311,14 @@ double MPMField::step_dt() const
 int MPMField::steps_to_next() const
 {
   return every ? every->steps_to_next() : 1;
+}
+
+void MPMField::outer_force(const double *forces, int i, double *f) const
+{
+  const bigint row = 3 * (bigint) i;
+  std::copy_n(forces + row, 3, f);
+  for (const auto *ifix : elements)
+    for (int d = 0; d < 3; d++) f[d] -= ifix->forces()[row + d];
 }
 
 PointRows MPMField::rows() const

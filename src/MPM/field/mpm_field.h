@@ -170,6 +170,8 @@ class MPMField : protected Pointers {
   int steps_to_next() const;
   /** The arrays of points as transfers read them. */
   MPM_NS::PointRows rows() const;
+  /** f[3]: force on point i without that of elements, which is internal. forces: see rows().f. */
+  void outer_force(const double *forces, int i, double *f) const;
   /** Rows for transfers of other values and weights, in which points do not move (the time step is
    *  zero). */
   MPM_NS::PointRows rows_at_rest(double *values, const double *weights);

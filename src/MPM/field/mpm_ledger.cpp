@@ -29,6 +29,21 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+namespace {
+constexpr double ROUND_OFF = 1.0e-12;
+
+/** Is the force on a mass another one than that of an acceleration? */
+bool differs(const double f[3], double mass, const double a[3])
+{
+  double difference = 0.0, size = 0.0;
+  for (int d = 0; d < 3; d++) {
+    difference += std::fabs(f[d] - mass * a[d]);
+    size += std::fabs(mass * a[d]);
+  }
+  return !(difference <= ROUND_OFF * size);
+}
+}    // namespace
+
 MPMLedger::NodeSums MPMLedger::sums_over_nodes() const
 {
   const Grid &grid = field.grid;
@@ -64,59 +79,75 @@ double MPMLedger::point_kinetic_energy() const
 void MPMLedger::account_for_nodes()
 {
   const NodeSums sums = sums_over_nodes();
-  common = finds_common_acceleration(sums);
-  at_points = false;
   account_for_forces(sums);
   transfer += sums.old_energy - kinetic_points;
   kinetic_points = sums.energy;
 }
 
-/** Have all points the same acceleration by the forces on them, as by gravity or without any, and
- *  is nothing else put on the nodes? Not in the first steps, and in some later ones, in which the
- *  accounts are checked. Collective. */
+/** Acceleration of most points of this rank by the forces on them, by a vote of some points spread
+ *  over all. Returns false where it has no points, or where more than half of these differ. */
+bool MPMLedger::elect_acceleration(const PointRows &r, double a[3]) const
+{
+  static constexpr int VOTES = 9;
+  const auto &runs = field.map->runs;
+  if (runs.empty()) return false;
+  double of_point[VOTES][3];
+  for (int k = 0; k < VOTES; k++) {
+    const auto &run = runs[(bigint) k * runs.size() / VOTES];
+    const int i = run.first + (int) ((bigint) k * (run.last - run.first) / VOTES);
+    for (int d = 0; d < 3; d++) of_point[k][d] = r.f[3 * (bigint) i + d] / r.mass[i];
+  }
+  for (int k = 0; 2 * k <= VOTES; k++) {
+    int votes = 0;
+    for (int l = k; l < VOTES; l++) votes += differs(of_point[l], 1.0, of_point[k]) ? 0 : 1;
+    if (2 * votes <= VOTES) continue;
+    std::copy_n(of_point[k], 3, a);
+    return true;
+  }
+  return false;
+}
+
+/** Have nearly all points the same acceleration by the forces on them, as by gravity or without
+ *  any, and is nothing else put on the nodes? The points with other forces become others. Not in
+ *  the first steps, and in some later ones, in which the accounts are checked. Collective. */
 bool MPMLedger::finds_common_acceleration(const NodeSums &sums)
 {
   static constexpr bigint FIRST = 64, OFTEN = 32;    // of steps with a check
-  static constexpr double ROUND_OFF = 1.0e-12;
+  static constexpr double FEW = 0.25;                // most of the points with other forces
   const bigint step = update->ntimestep;
   if (step < FIRST || step % OFTEN == 0 || at_points || !field.time_limit->bound ||
       !field.elements.empty() || !field.stretching.empty() || !field.plan->added_stresses.empty())
     return false;
-  // of the first point on a rank, and its negative; how much forces differ from it, and their size
+  // of this rank, and its negative
   constexpr int N = 6;
-  double of_rank[N], greatest[N], sums_of_rank[4] = {0.0, 0.0, 0.0, sums.mass}, total[4], a[3] = {};
+  double of_rank[N], greatest[N];
   std::fill_n(of_rank, N, -std::numeric_limits<double>::max());
   const PointRows r = field.rows();
-  if (const auto &runs = field.map->runs; !runs.empty()) {
-    const int i = runs[0].first;
-    for (int d = 0; d < 3; d++) {
-      of_rank[d] = a[d] = r.f[3 * (bigint) i + d] / r.mass[i];
-      of_rank[3 + d] = -a[d];
-    }
-  }
-  for (const auto &run : field.map->runs) {
-    double differ = 0.0, mass = 0.0;
-    for (int i = run.first; i < run.last; i++) {
-      const double *const f = r.f + 3 * (bigint) i, m = r.mass[i];
-      mass += m;
-      for (int d = 0; d < 3; d++) differ += std::fabs(f[d] - m * a[d]);
-    }
-    sums_of_rank[0] += differ;
-    sums_of_rank[1] += mass * (std::fabs(a[0]) + std::fabs(a[1]) + std::fabs(a[2]));
-    sums_of_rank[2] += mass;
-  }
+  if (elect_acceleration(r, of_rank))
+    for (int d = 0; d < 3; d++) of_rank[3 + d] = -of_rank[d];
   MPI_Allreduce(of_rank, greatest, N, MPI_DOUBLE, MPI_MAX, world);
-  MPI_Allreduce(sums_of_rank, total, 4, MPI_DOUBLE, MPI_SUM, world);
   double most = 0.0;
   for (double g : greatest) most = std::max(most, std::fabs(g));
-  // with other physics, nodes can have other masses than those of the points
-  bool same =
-      total[0] <= ROUND_OFF * total[1] && std::fabs(total[2] - total[3]) <= ROUND_OFF * total[2];
   for (int d = 0; d < 3; d++) {
-    same = same && greatest[d] + greatest[3 + d] <= ROUND_OFF * most;
+    if (!(greatest[d] + greatest[3 + d] <= ROUND_OFF * most)) return false;
     acceleration[d] = 0.5 * (greatest[d] - greatest[3 + d]);
   }
-  return same;
+
+  bigint n = 0;
+  double of_points = 0.0;
+  for (const auto &run : field.map->runs) {
+    n += run.last - run.first;
+    for (int i = run.first; i < run.last; i++) {
+      of_points += r.mass[i];
+      if (differs(r.f + 3 * (bigint) i, r.mass[i], acceleration)) others.push_back(i);
+    }
+  }
+  std::sort(others.begin(), others.end());
+  const double sums_of_rank[] = {(double) n, (double) others.size(), of_points, sums.mass};
+  double total[4];
+  MPI_Allreduce(sums_of_rank, total, 4, MPI_DOUBLE, MPI_SUM, world);
+  // with other physics, nodes can have other masses than those of the points
+  return total[1] <= FEW * total[0] && std::fabs(total[2] - total[3]) <= ROUND_OFF * total[2];
 }
 
 /** Places relative to the middle of the box, for the sake of digits. */
@@ -142,29 +173,40 @@ MPMLedger::PointSums MPMLedger::sums_along_acceleration() const
 /** Work of the forces on points (atom->f) and of their stress on the nodes. */
 void MPMLedger::account_for_forces(const NodeSums &sums)
 {
-  if (!common) {
+  others.clear();
+  common = finds_common_acceleration(sums);
+  at_points = false;
+  if (common) {
+    const TransferStep s = field.step_data();
+    const double unit = force->mvv2e * s.dt * s.force_scale;
+    work_at_nodes = unit * (dot(acceleration, sums.momentum) + power_of_others());
+    internal += work_at_nodes + (spent() - spent_before) - (sums.energy - sums.old_energy);
+    external += work_at_nodes;
+    if (is_accelerated()) before_motion = sums_along_acceleration();
+  } else {
     account_at_points();
-    note_starts();
-    return;
+    std::fill_n(acceleration, 3, 0.0);
+    others.clear();
+    // an implicit step finds the work on the way of points itself
+    if (work_at_nodes != 0.0 && field.time_limit->bound)
+      each_point(field, [&](const MPMPointMap::Run &, int i) {
+        others.push_back(i);
+      });
   }
-  const TransferStep s = field.step_data();
-  work_at_nodes = force->mvv2e * s.dt * s.force_scale * dot(acceleration, sums.momentum);
-  internal += work_at_nodes + (spent() - spent_before) - (sums.energy - sums.old_energy);
-  external += work_at_nodes;
-  if (is_accelerated()) before_motion = sums_along_acceleration();
+  note_starts();
 }
 
-/** Work of forces counts on the way that points go, see work_on_points(). The nodes have got another
- *  work from them, because transfers smooth the old velocities: the difference is theirs. */
+/** Work of forces counts on the way that points go, see work_on_points(). The nodes have got
+ *  another work from them, because transfers smooth the old velocities: the difference is
+ *  theirs. */
 void MPMLedger::account_for_points()
 {
-  if (common || !starts.empty()) {
+  if (common || !others.empty()) {
     double late = 0.0;
     const double work = work_on_points(late);
     external += work - work_at_nodes;
     transfer -= work - late - work_at_nodes;
     internal += late;    // an error of the integration
-    starts.clear();
   }
   const double kinetic = point_kinetic_energy();
   transfer += kinetic - kinetic_points;
@@ -245,17 +287,57 @@ void MPMLedger::account_at_points()
   internal += unit * (s.stress_scale * stress - s.force_scale * inner);
 }
 
-/** Before points move. An implicit step finds the work on their way itself. */
+/** Before points move. */
 void MPMLedger::note_starts()
 {
-  starts.clear();
-  if (work_at_nodes == 0.0 || !field.time_limit->bound) return;
-  starts.resize(6 * (std::size_t) atom->nlocal);
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) {
-      std::copy_n(atom->x[i], 3, &starts[6 * (std::size_t) i]);
-      std::copy_n(atom->v[i], 3, &starts[6 * (std::size_t) i + 3]);
+  starts.resize(6 * others.size());
+  double *start = starts.data();
+  for (int i : others) {
+    std::copy_n(atom->x[i], 3, start);
+    std::copy_n(atom->v[i], 3, start + 3);
+    start += 6;
+  }
+}
+
+/** Force on a point beyond the acceleration that all have in common, without those of elements. */
+void MPMLedger::find_other_force(const PointRows &r, int i, double f[3]) const
+{
+  field.outer_force(r.f, i, f);
+  for (int d = 0; d < 3; d++) f[d] -= r.mass[i] * acceleration[d];
+}
+
+/** Power at the nodes of the forces on others beyond the common acceleration. */
+double MPMLedger::power_of_others()
+{
+  if (others.empty()) return 0.0;
+  field.nodes.complete_velocities();
+  const PointRows r = field.rows();
+  const TransferStep s = field.step_data();
+  double power = 0.0, f[3], L[9 * BATCH], velocity[3 * BATCH] = {};
+  MPMPointMap &map = *field.map;
+  const auto next = [&](int i) {
+    return std::lower_bound(others.begin(), others.end(), i);
+  };
+  for (const auto &a : map.active) {
+    bool loaded = false;
+    int base[3];
+    for (int k = a.first_run; k < a.last_run; k++) {
+      const auto &run = map.runs[k];
+      for (auto other = next(run.first); other != others.end() && *other < run.last;) {
+        if (!loaded) map.load_tile(a, base, true);
+        loaded = true;
+        const int first = *other, n = std::min(BATCH, run.last - first);
+        PointRows b = rows_from(field, r, first);
+        b.velocity = velocity;
+        field.kernel.g2p_gradient(b, s, 0, n, base, map.tile_load, L);
+        for (; other != others.end() && *other < first + n; ++other) {
+          find_other_force(r, *other, f);
+          power += dot(f, velocity + 3 * (*other - first));
+        }
+      }
     }
+  }
+  return power;
 }
 
 /** Work of forces along the way of points from the middle of the step before to that of this one:
@@ -266,27 +348,24 @@ double MPMLedger::work_on_points(double &late) const
 {
   const double half = 0.5 * field.step_dt(), half_before = 0.5 * field.step_dt_before();
   const double unit = force->mvv2e * force->ftm2v;
-  if (common) {
-    if (!is_accelerated()) return 0.0;
-    const PointSums now = sums_along_acceleration();
-    late = unit * (half_before - half) * before_motion.velocity;
-    return unit *
-        (now.place - before_motion.place - half * now.velocity +
-         half_before * before_motion.velocity);
-  }
-  const double *const f = field.rows().f;
   double sum = 0.0, before = 0.0;
-  for (const auto &run : field.map->runs)
-    for (int i = run.first; i < run.last; i++) {
-      const bigint row = 3 * (bigint) i;
-      const double *const x = &starts[2 * row], *const v = x + 3;
-      for (int d = 0; d < field.lattice.dim; d++) {
-        double of_others = f[row + d];
-        for (const auto *ifix : field.elements) of_others -= ifix->forces()[row + d];
-        sum += of_others * (atom->x[i][d] - x[d] - half * atom->v[i][d] + half_before * v[d]);
-        before += of_others * v[d];
-      }
+  if (is_accelerated()) {
+    const PointSums now = sums_along_acceleration();
+    before = before_motion.velocity;
+    sum = now.place - before_motion.place - half * now.velocity + half_before * before;
+  }
+  const PointRows r = field.rows();
+  const double *start = starts.data();
+  double f[3];
+  for (int i : others) {
+    const double *const x = start, *const v = start + 3;
+    find_other_force(r, i, f);
+    for (int d = 0; d < field.lattice.dim; d++) {
+      sum += f[d] * (atom->x[i][d] - x[d] - half * atom->v[i][d] + half_before * v[d]);
+      before += f[d] * v[d];
     }
+    start += 6;
+  }
   late = unit * (half_before - half) * before;
   return unit * sum;
 }

@@ -36,7 +36,7 @@ struct MPMEnergies {
 /** Energy accounts of a field. Each account is a sum of its own: works are forces or impulses times
  *  velocities, and transfers are differences of kinetic energies before and after. No account is
  *  found as the remainder of the others, so their balance is a check; see "The ledger" in the
- *  developer guide. Where forces on points are an acceleration that all have in common, this check
+ *  developer guide. Where forces on points are an acceleration that most have in common, this check
  *  is made in some of the steps only: in the others, the work of stress is what nodes lose. */
 class MPMLedger : protected Pointers, public MPMEnergies {
  public:
@@ -114,10 +114,14 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   std::vector<double> impulses;
   // of forces in this step, at the mean of the old and the new velocity of the nodes
   double work_at_nodes = 0.0;
-  std::vector<double> starts;    // [point][6] place and velocity before points move; empty: none
-  double spent_before = 0.0;     // spent() before node actions
-  // acceleration that all points have in common in this step, by the forces on them, and before
-  // points move the sum of their masses times the place along it, and of their momenta
+  // points with other forces than those of the common acceleration, in rising order where there is
+  // one, and [other][6] their places and velocities before points move
+  std::vector<int> others;
+  std::vector<double> starts;
+  bool any_others = false;      // on any rank, where there is a common acceleration
+  double spent_before = 0.0;    // spent() before node actions
+  // acceleration that nearly all points have in common in this step, by the forces on them, and
+  // before points move the sum of their masses times the place along it, and of their momenta
   bool common = false, at_points = false;    // at_points: see count_at_points()
   double acceleration[3] = {};
   struct PointSums {
@@ -128,6 +132,7 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   static bool change_by(double *record, const double *impulse, double change[3]);
   /** What the accounts say that nodes have gained. */
   double spent() const { return external + boundary + contact + transfer - internal; }
+  bool elect_acceleration(const MPM_NS::PointRows &, double a[3]) const;
   bool finds_common_acceleration(const NodeSums &);
   bool is_accelerated() const
   {
@@ -137,6 +142,8 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   void account_for_forces(const NodeSums &);
   void account_at_points();
   void note_starts();
+  void find_other_force(const MPM_NS::PointRows &, int i, double f[3]) const;
+  double power_of_others();
   double work_on_points(double &late) const;
   double stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;
 };

@@ -106,13 +106,14 @@ class MPMSetupChecks : protected Pointers {
  *  Collective. */
 bigint points_in_both(class LAMMPS *, int one, int other);
 
-/** What to do about a time step that is above a limit: a fix mpm/dt which is there has found the limit
- *  some steps before. */
+/** What to do about a time step that is above a limit: a fix mpm/dt which is there has found the
+ *  limit some steps before. */
 std::string remedy_of_step(class LAMMPS *);
 
-/** What time_integrate of a fix that moves material points is to be. LAMMPS warns when the groups of
- *  two integrators overlap, but atoms of this group that are no points may well be moved by others;
- *  refuse_other_integrators() looks at the points. One of all fixes remains an integrator. */
+/** What time_integrate of a fix that moves material points is to be. LAMMPS warns when the groups
+ *  of two integrators overlap, but atoms of this group that are no points may well be moved by
+ *  others; refuse_other_integrators() looks at the points. One of all fixes remains an
+ *  integrator. */
 int seen_as_integrator(class LAMMPS *, const class Fix &mine);
 
 /** Points need no ghosts: without pair forces, a cutoff that is next to nothing spares LAMMPS's

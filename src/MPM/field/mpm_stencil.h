@@ -32,11 +32,11 @@ class MPMStencil {
     double r[3];           ///< from the node to the point, in node spacings
   };
 
-  /** Share of a cell that a node without points may have by round-off. Where quadratic functions end
-   *  at the distance e behind a node, in node spacings, it has the mass e^2, and the force e and
-   *  stiffness e^2: it moves by 1/e, and gives points in reach a strain that does not depend on e.
-   *  Whether such a node is there must not depend on round-off, as in regular arrays of points, where
-   *  functions end in planes of nodes. */
+  /** Share of a cell that a node without points may have by round-off. Where quadratic functions
+   *  end at the distance e behind a node, in node spacings, it has the mass e^2, and the force e
+   *  and stiffness e^2: it moves by 1/e, and gives points in reach a strain that does not depend on
+   *  e. Whether such a node is there must not depend on round-off, as in regular arrays of points,
+   *  where functions end in planes of nodes. */
   static constexpr double ROUND_OFF = 1.0e-20;
 
   explicit MPMStencil(const MPMField &field) : field(field) {}

@@ -42,8 +42,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
-// difference of the pressures of points of a gas from the means around them, relative to these, that
-// is told: below, the mean pressure is right within 2 %
+// difference of the pressures of points of a gas from the means around them, relative to these,
+// that is told: below, the mean pressure is right within 2 %
 static constexpr double MOST_SPREAD = 0.05;
 static const char GAS_NEEDS[] =
     "Use four points per cell and axis, shape cubic, or cpdi, and transfer apic; a smaller spacing "

@@ -619,7 +619,7 @@ void MPMFlow::check_speed()
   fastest = all[0];
   if (all[0] * update->dt <= MPMFlowLattice::MOST_MOTION * options.h) return;
   // what hits a wall flat is several times faster after the step: no limit by earlier speeds can
-  // foresee that
+  // predict that
 
   const bool is_set = !modify->get_fix_by_style("^mpm/dt$").empty();
   error->all(

@@ -537,9 +537,9 @@ double FixMPMImmersed::steps_ahead(int i, double &mass) const
   return ahead;
 }
 
-/** A grain under a constant force then has the velocity of its displacement per step. With the whole
- *  impulse before it moves, its velocity at the end of a step would be off by half of what forces
- *  give to it in a step. */
+/** A grain under a constant force then has the velocity of its displacement per step. With the
+ *  whole impulse before it moves, its velocity at the end of a step would be off by half of what
+ *  forces give to it in a step. */
 void FixMPMImmersed::push(int i, double mass, const double *impulse)
 {
   double at_once = 1.0;

@@ -37,13 +37,13 @@
    of capacities. With e0 for all, points with little capacity next to others with much kept their
    initial temperatures: two touching bars, 300 and 100 K, capacities 15 to 1, were wrong by 112 K
    when heat had crossed three of their cells, and have an error of 12 K. But nodes that are
-   dominated by others also smooth the kink of a steady temperature at an interface: the heat through
-   three cells of a material with 1/100 of the capacity and conductivity of what is around was 22 %
-   too large in short steps (1/15: 2.8 %; with e0 for all 3.0 and 1.7 %). Above a ratio of 16 the own
-   rates are therefore reduced by its third power. No rate is right there: a node within 1.5
-   spacings of much capacity has one temperature for both sides, so that with their own rate, too,
-   three cells from the interface 4 % of a jump are missing with a ratio of 100, and 12 % with 1000.
-   Two fields have two temperatures there, and errors of 0.8 % with any ratio.
+   dominated by others also smooth the kink of a steady temperature at an interface: the heat
+   through three cells of a material with 1/100 of the capacity and conductivity of what is around
+   was 22 % too large in short steps (1/15: 2.8 %; with e0 for all 3.0 and 1.7 %). Above a ratio of
+   16 the own rates are therefore reduced by its third power. No rate is right there: a node within
+   1.5 spacings of much capacity has one temperature for both sides, so that with their own rate,
+   too, three cells from the interface 4 % of a jump are missing with a ratio of 100, and 12 % with
+   1000. Two fields have two temperatures there, and errors of 0.8 % with any ratio.
 
    Stability. The matrix of conduction is a sum over points of V_p k_p grad N grad N^T, and that of
    capacities one of C_p diag(N). The greatest eigenvalue is not above the greatest one of the

@@ -23,11 +23,12 @@
    surface or a contact is faster than conduction across a cell, it follows with the rate of
    conduction, as in long steps (MPMHeatFaces::limit()).
 
-   A step of several explicit limits is made in parts that double (MPMSuperStep::advance_in_parts()).
-   Without these a body whose surface is suddenly at another temperature takes only half of the fast
-   changes in each step: the peak of the stress wave of a heated half space was 0.83 of the exact
-   one, not 0.88, with steps of 150 limits. What points and nodes make of each other in each step is
-   a fast change, too, and half of it would be left in a steady state.
+   A step of several explicit limits is made in parts that double
+   (MPMSuperStep::advance_in_parts()). Without these a body whose surface is suddenly at another
+   temperature takes only half of the fast changes in each step: the peak of the stress wave of a
+   heated half space was 0.83 of the exact one, not 0.88, with steps of 150 limits. What points and
+   nodes make of each other in each step is a fast change, too, and half of it would be left in a
+   steady state.
 
    Conduction is in each step if something varies from step to step, such as variables and regions
    that move, if anything is implicit, or if others give heat in each step.

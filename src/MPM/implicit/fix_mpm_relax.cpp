@@ -221,10 +221,10 @@ void FixMPMRelax::measure()
   const int dim = fields[0]->lattice.dim;
   length = thickness = 0.0;
   if (fields[0]->options.axisymmetric) return;    // volumes are those of rings
-  double size[3];
+  double size[3] = {};                            // in 2d the smallest is 0
   for (int d = 0; d < dim; d++) size[d] = -ends[3 + d] - ends[d];
-  std::sort(size, size + dim);
-  length = size[dim - 1];
+  std::sort(size, size + 3);
+  length = size[2];
   thickness = volume / (dim == 3 ? length * (size[1] + fields[0]->lattice.h) : length);
 }
 

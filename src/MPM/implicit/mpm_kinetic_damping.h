@@ -43,7 +43,8 @@ struct MPMKineticDamping {
 
   static constexpr double SOON = 3.0;       ///< steps between two rests
   static constexpr double GROWN = 100.0;    ///< ratio of peaks that counts as growth
-  /** Least fall of the energy, relative to it: that of a body in free flight differs by round-off. */
+  /** Least fall of the energy, relative to it: that of a body in free flight differs by
+   *  round-off. */
   static constexpr double FALL = 1.0e-10;
 
   /** Is half of the change of velocities to be left out in the step that comes next, the first

@@ -76,7 +76,7 @@ class MPMSolvedNodes {
   /** Sums of mine [n] over ranks, added in their order. Collective. */
   void sum_in_order(int n, const double *mine, double *all)
   {
-    LAMMPS_NS::sum_in_order(lmp, n, mine, of_ranks, all);
+    LAMMPS_NS::sum_in_order(lmp, n, mine, rank_sums, all);
   }
   /** Is this true on any rank? Collective. */
   bool any(bool mine) const;
@@ -126,7 +126,7 @@ class MPMSolvedNodes {
  private:
   bool by_reach = false;        // are forces of nodes weighted by reach?
   std::vector<double> reach;    // [node] number of points there, at most 1
-  std::vector<double> sums, of_ranks;
+  std::vector<double> sums, rank_sums;
 
   void find_reach();
   void find_active();

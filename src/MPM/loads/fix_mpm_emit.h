@@ -87,9 +87,9 @@ class FixMPMEmit :
   /** Do the points enter this field? */
   bool emits_into(const MPMField &) const;
   bool may_be_empty(const MPMField &field) const override { return emits_into(field); }
-  /** What must be known of points before they come: their type, and the largest spacing that belongs
-   *  to their volumes in this field. A given area of the section changes these by a share that the
-   *  region alone tells later. */
+  /** What must be known of points before they come: their type, and the largest spacing that
+   *  belongs to their volumes in this field. A given area of the section changes these by a share
+   *  that the region alone tells later. */
   int type_of_points() const { return type; }
   double largest_spacing(const MPMField &) const;
 

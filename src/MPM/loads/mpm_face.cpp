@@ -229,8 +229,8 @@ MPMFace::Judgement MPMFace::judge() const
 }
 
 /** The surface of a region that goes through a body is no surface there: the force acts on the
- *  section. Points outside of the region, within a layer from it, would cover an area; area: that of
- *  the points below it. */
+ *  section. Points outside of the region, within a layer from it, would cover an area; area: that
+ *  of the points below it. */
 void MPMFace::tell_of_cut(const std::string &user, int igroup, double area) const
 {
   double mine = 0.0, beyond;

@@ -56,10 +56,10 @@ class PlaneStress {
    *  for which no state was found. */
   int update(Batch &, const Point *, const std::function<void(Batch &)> &last);
 
-  /** c[n]: speed of the fastest wave along the body in the present state, increased for viscosity as
-   *  by Material::wave_speed(). Batch: as there. motion[n][9]: Point::along of the state. Elastic
-   *  materials have their own tangent, where they have one; the speed of others, whose elastic
-   *  strains are small, is that in the material times the ratio of the two at rest. */
+  /** c[n]: speed of the fastest wave along the body in the present state, increased for viscosity
+   *  as by Material::wave_speed(). Batch: as there. motion[n][9]: Point::along of the state.
+   *  Elastic materials have their own tangent, where they have one; the speed of others, whose
+   *  elastic strains are small, is that in the material times the ratio of the two at rest. */
   void wave_speed(const Batch &, const double *const *motion, double *c) const;
 
   /** Young's modulus and Poisson's ratio at rest. Throws std::runtime_error if the material is not

@@ -600,7 +600,7 @@ bool SurfaceMesh::is_closest_around(const Point &x, const Triangle &t, int featu
   return true;
 }
 
-int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) const
+int SurfaceMesh::closest_points(const Point &x, double cutoff, ClosestPoint *list, int most) const
 {
   int n = 0;
   double side = 0.0;        // not known yet
@@ -611,7 +611,7 @@ int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) c
   while (n < most && (int) done.size() < nparts) {
     double smallest = cutoff * cutoff;
     const Triangle *triangle = nullptr;
-    Touch touch;
+    ClosestPoint closest;
     int at = 0;
     search(x, smallest, skip, [&](const Triangle &t, const Point &p, int feature, double square) {
       const double out = dot(x - p, mean_normal(t, feature));
@@ -620,16 +620,16 @@ int SurfaceMesh::touches(const Point &x, double cutoff, Touch *list, int most) c
       smallest = square;
       triangle = &t;
       at = feature;
-      touch = {p, side * std::sqrt(square), t.part};
+      closest = {p, side * std::sqrt(square), t.part};
     });
     if (!triangle) break;
     done.push_back(triangle->part);
     bool is_new = is_closest_around(x, *triangle, at, smallest);
     for (int k = 0; k < n; k++) {    // a common edge or corner
-      const Point r = touch.point - list[k].point;
+      const Point r = closest.point - list[k].point;
       if (dot(r, r) <= near * near) is_new = false;
     }
-    if (is_new) list[n++] = touch;
+    if (is_new) list[n++] = closest;
   }
   return n;
 }

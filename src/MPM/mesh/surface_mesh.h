@@ -52,8 +52,8 @@ class SurfaceMesh {
    *  by scale, and moved by shift. Corners closer than 1e-6 of the size of the body are merged.
    *  Throws std::runtime_error, with name in the message, if the file is invalid, if the surface is
    *  not closed (with open: if neighbors look to different sides), or if its closed parts have no
-   *  volume, intersect, or face the wrong way (inward, except for walls of cavities). A surface that
-   *  is inside out as a whole is turned. */
+   *  volume, intersect, or face the wrong way (inward, except for walls of cavities). A surface
+   *  that is inside out as a whole is turned. */
   SurfaceMesh(const std::string &bytes, const std::string &name, double scale, const Point &shift,
               const SurfaceOptions &options = SurfaceOptions());
   ~SurfaceMesh();
@@ -73,8 +73,8 @@ class SurfaceMesh {
    *  of a ball. */
   double distance_and_normal(const Point &x, Point &normal) const;
 
-  /** Where a ball touches the surface. */
-  struct Touch {
+  /** Closest point of a part of the surface. */
+  struct ClosestPoint {
     Point point;
     double distance;    // negative inside of the body
     int part;
@@ -83,7 +83,7 @@ class SurfaceMesh {
   /** For each part of the surface (see nparts), finds the closest point that is seen from the side
    *  of x, within the cutoff, unless an adjacent point beyond the edge of the part is closer. The
    *  list has no more than most entries and begins with the closest one. Returns their number. */
-  int touches(const Point &x, double cutoff, Touch *list, int most) const;
+  int closest_points(const Point &x, double cutoff, ClosestPoint *list, int most) const;
 
   /** Lower bound of the distance, without a search: positive outside, negative inside; 0:
    *  unknown. */

@@ -66,7 +66,8 @@ SurfacePoints::merge(const std::vector<std::array<Point, 3>> &soup)
   return triangles;
 }
 
-/** Triangles at a corner that are joined by smooth edges are one part of the surface. */
+/** Triangles at a corner that are joined by smooth edges are one part of the surface, unless this
+ *  goes round to other directions, as at the tip of a cone, which is sharp. */
 void SurfacePoints::find_curved(const std::vector<Triangle> &triangles)
 {
   std::vector<Point> normals;
@@ -108,15 +109,18 @@ void SurfacePoints::find_curved(const std::vector<Triangle> &triangles)
       std::sort(ends.begin(), ends.end());
       ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
       c.normal = unit(c.normal);
-      if (fit(c, places[i], ends)) curved.push_back(c);
+      const bool smooth = std::all_of(part.begin(), part.end(), [&](int t) {
+        return dot(normals[t], c.normal) > SMOOTH;
+      });
+      if (smooth && fit(c, places[i], ends)) curved.push_back(c);
     }
   }
   first_curved.push_back((int) curved.size());
 }
 
-/** The normal N and the curvature S with d.S.d = -2 N.d for the vectors d to adjacent corners, which
- *  is exact for chords of circles if d has its whole length along the surface. False: it is plane
- *  or concave. */
+/** The normal N and the curvature S with d.S.d = -2 N.d for the vectors d to adjacent corners,
+ *  which is exact for chords of circles if d has its whole length along the surface. False: it is
+ *  plane or concave. */
 bool SurfacePoints::fit(Curved &c, const Point &at, const std::vector<int> &around) const
 {
   constexpr int ROUNDS = 3;    // for the directions along the surface

@@ -121,8 +121,10 @@ extern "C" void lammpsplugin_init(void *ptr, void *handle, void *regfunc)
   auto *lmp = (LAMMPS *) ptr;
 
   if (strcmp(lmp->version, LAMMPS_VERSION) != 0)
-    lmp->error->all(FLERR, "mpmplugin was compiled for LAMMPS {}, but this is LAMMPS {}: "
-                    "compile it again with the sources of this version", LAMMPS_VERSION, lmp->version);
+    lmp->error->all(FLERR,
+                    "mpmplugin was compiled for LAMMPS {}, but this is LAMMPS {}: "
+                    "compile it again with the sources of this version",
+                    LAMMPS_VERSION, lmp->version);
 
   const Registrar registrar{ptr, handle, (lammpsplugin_regfunc) regfunc};
 

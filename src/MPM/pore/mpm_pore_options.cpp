@@ -431,8 +431,8 @@ double MPMPoreChecks::Extent::largest(int dim) const
   return size;
 }
 
-/** The weight of water per volume is the divisor of hydraulic conductivities. With permeabilities in
- *  units of area it is a viscosity, which may be anything but these numbers. */
+/** The weight of water per volume is the divisor of hydraulic conductivities. With permeabilities
+ *  in units of area it is a viscosity, which may be anything but these numbers. */
 void MPMPoreChecks::compare_weight(const double *gravity)
 {
   constexpr double SAME = 0.02, THOUSAND = 1000.0;
@@ -452,8 +452,8 @@ void MPMPoreChecks::compare_weight(const double *gravity)
                            water.resistance, water.density, g, weight));
 }
 
-/** Any way of pressure may be meant, but not one that is nothing on the lattice, and not a drag that
- *  is nothing for waves across all of the soil. */
+/** Any way of pressure may be meant, but not one that is nothing on the lattice, and not a drag
+ *  that is nothing for waves across all of the soil. */
 void MPMPoreChecks::compare_flow(const MPMPoreSoil &soil, const Material &material, double size,
                                  const Scene &scene)
 {

@@ -232,7 +232,8 @@ bool MPMCrossingLines::find(const MPMWallNode &from_node, MPMCrossing &c)
   return true;
 }
 
-/** Directions along a surface with the normal n, as many as it returns: in 3d axes and diagonals. */
+/** Directions along a surface with the normal n, as many as it returns: in 3d axes and
+ *  diagonals. */
 static int directions_along(const double *n, int dim, double t[4][3])
 {
   if (dim == 2) {
@@ -253,8 +254,8 @@ static int directions_along(const double *n, int dim, double t[4][3])
 }
 
 /** Is the region thinner than nodes resolve below this place of its surface, and around it? Of the
- *  corner of a thick body a line along an axis sees the tip: the body is thick along the normal, or,
- *  if the corner is sharp, a little further from its tip. */
+ *  corner of a thick body a line along an axis sees the tip: the body is thick along the normal,
+ *  or, if the corner is sharp, a little further from its tip. */
 bool MPMCrossingLines::is_plate(const double *surface, const double *n) const
 {
   constexpr double AROUND = 2.0;    // node spacings

@@ -11,7 +11,8 @@
  *  From outside of unions it finds nothing, so that their parts are asked here. Outside of all
  *  parts of a union, and inside of all parts of an intersection, the distance is the least of
  *  theirs. Inside of a union, and outside of an intersection, a part counts whose own side this is,
- *  with those of its places that are not hidden by others.
+ *  with those of its places that are not hidden by others. Where all are hidden, an edge between
+ *  parts is the nearest surface.
  *
  *  On the axis of cones zero is divided by zero: a place next to it is taken. From outside, an end
  *  with a radius of zero gives not-a-number: it is declared open, as its point belongs to the
@@ -175,6 +176,58 @@ void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
       if (!hidden) places.push_back(place);
     }
   }
+  if (places.empty() && in_body == is_union) find_edge(x, far);
+}
+
+/** The place that is nearest to x of those that lie on the far side of all parts, or on their
+ *  surfaces: by steps toward x, from which all surfaces, as planes, send back to the nearest place
+ *  that they allow (dual variables are found one by one: C. Hildreth, Nav. Res. Logist. Q. 4 (1957)
+ *  79). Steps become shorter where an edge bends so that they overshoot. If this does not converge,
+ *  the largest distance from a part, which is less. */
+void MPMRegionSurface::find_edge(const double *x, double far) const
+{
+  constexpr int ROUNDS = 100, SWEEPS = 200;
+  constexpr double STEP = 1.0e-5, CONVERGED = 1.0e-9;    // of far
+  struct Plane {
+    double n[3], height, push;    // height of y above it
+  };
+  std::vector<Plane> planes;
+  const double side = is_union ? -1.0 : 1.0;
+  double y[3], least = 0.0, change = far, share = 1.0;
+  std::copy_n(x, 3, y);
+  for (int round = 0; round < ROUNDS; round++) {
+    planes.clear();
+    double out = 0.0;
+    for (const auto &part : parts) {
+      Plane plane = {};
+      plane.height = side * part.find(y, far, false);
+      if (plane.height <= -far) continue;
+      if (plane.height >= far && round == 0) return;
+      out = std::max(out, plane.height);
+      part.normal(y, far, STEP * far, plane.n);
+      MathExtra::scale3(side, plane.n);
+      planes.push_back(plane);
+    }
+    if (round == 0) least = out;
+    if (change <= CONVERGED * far && out <= CONVERGED * far) {
+      const double distance = sqrt(MathExtra::distsq3(x, y));
+      if (distance < far) places.push_back({{y[0], y[1], y[2]}, distance});
+      return;
+    }
+    double way[3];
+    for (int d = 0; d < 3; d++) way[d] = share * (x[d] - y[d]);
+    for (int sweep = 0; sweep < SWEEPS; sweep++)
+      for (auto &plane : planes) {
+        const double more = std::max(plane.height + MathExtra::dot3(plane.n, way), -plane.push);
+        plane.push += more;
+        for (int d = 0; d < 3; d++) way[d] -= more * plane.n[d];
+      }
+    const double before = change;
+    change = MathExtra::len3(way);
+    if (round > 0 && change > 0.7 * before) share *= 0.5;
+    MathExtra::add3(y, way, y);
+  }
+  places.push_back({{x[0], x[1], x[2]}, least});
 }
 
 /** The direction to the nearest place on the surface is the gradient, unless x is on the surface,

@@ -31,9 +31,7 @@ class MPMRegionSurface {
   /** Has the region, or a part of it, open faces? Then all of space counts as inside. */
   bool is_open() const;
 
-  /** Signed distance of x, negative in the region. Returns far or -far if it is greater, or not
-   *  known. It is not known in a union and outside of an intersection if the nearest surface can be
-   *  an edge between two parts. */
+  /** Signed distance of x, negative in the region. Returns far or -far if it is greater. */
   double distance(const double *x, double far) const { return find(x, far, true); }
 
   /** Distances and normals of a mesh come from SurfaceCells of this size from now on, where these
@@ -72,6 +70,7 @@ class MPMRegionSurface {
   void find_sharp_end();
   void find_places(const double *x, double far) const;
   void find_places_of_parts(const double *x, double far) const;
+  void find_edge(const double *x, double far) const;
   template <class F> void each_contact(const double *x, double far, bool inside, const F &f) const;
 };
 

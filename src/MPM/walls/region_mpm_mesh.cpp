@@ -310,21 +310,21 @@ int RegMPMMesh::touch(const double *x, double cutoff, double side)
   const SurfaceMesh::Point here = {x[0], x[1], x[2]};
   const double known = mesh->bound(here);
   if (known * side < 0.0 || std::fabs(known) >= cutoff) return 0;
-  SurfaceMesh::Touch touches[MAX_TOUCHES];
-  const int n = mesh->touches(here, cutoff, touches, tmax);
-  if (n == 0 || side * touches[0].distance < 0.0) return 0;
+  SurfaceMesh::ClosestPoint closest[MAX_TOUCHES];
+  const int n = mesh->closest_points(here, cutoff, closest, tmax);
+  if (n == 0 || side * closest[0].distance < 0.0) return 0;
   // the same order in every step, as other regions have it
   for (int i = 1; i < n; i++)
-    for (int j = i; j > 0 && touches[j].part < touches[j - 1].part; j--)
-      std::swap(touches[j], touches[j - 1]);
+    for (int j = i; j > 0 && closest[j].part < closest[j - 1].part; j--)
+      std::swap(closest[j], closest[j - 1]);
   for (int i = 0; i < n; i++) {
-    const auto &touch = touches[i];
-    contact[i].r = std::fabs(touch.distance);
-    contact[i].delx = x[0] - touch.point[0];
-    contact[i].dely = x[1] - touch.point[1];
-    contact[i].delz = x[2] - touch.point[2];
+    const auto &one = closest[i];
+    contact[i].r = std::fabs(one.distance);
+    contact[i].delx = x[0] - one.point[0];
+    contact[i].dely = x[1] - one.point[1];
+    contact[i].delz = x[2] - one.point[2];
     contact[i].radius = 0.0;
-    contact[i].iwall = touch.part;
+    contact[i].iwall = one.part;
     contact[i].varflag = 0;
   }
   return n;

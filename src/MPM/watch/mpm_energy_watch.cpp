@@ -105,21 +105,12 @@ void MPMEnergyWatch::find_forces()
   for (const auto *field : fields) forces.push_back(field->rows().f);
 }
 
-/** Force on a point without that of elements, which is internal. */
-void MPMEnergyWatch::force_on(int field, int i, double *f) const
-{
-  const bigint row = 3 * (bigint) i;
-  std::copy_n(forces[field] + row, 3, f);
-  for (const auto *ifix : fields[field]->elements)
-    for (int d = 0; d < 3; d++) f[d] -= ifix->forces()[row + d];
-}
-
 /** Energy that the force on a point gives or takes in a unit of time; from rest, the mean over the
  *  step. */
 double MPMEnergyWatch::power_on(int field, int i, double half) const
 {
   double f[3];
-  force_on(field, i, f);
+  fields[field]->outer_force(forces[field], i, f);
   return fabs(dot(f, atom->v[i])) + half * force->ftm2v * dot(f, f) / atom->rmass[i];
 }
 
@@ -167,7 +158,7 @@ void MPMEnergyWatch::moved()
     const bigint row = 3 * (bigint) i;
     const double *const x_now = places + row, *const v_now = velocities + row;
     double now[3], work = 0.0;
-    force_on(field, i, now);
+    fields[field]->outer_force(forces[field], i, now);
     for (int d = 0; d < dim; d++)
       work += now[d] * (x_now[d] - x[d] - half * v_now[d] + half_before * v[d]);
     // around an axis of symmetry

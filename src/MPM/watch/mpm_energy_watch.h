@@ -111,7 +111,6 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   int number_met() const;
   Loads kind_of_loads() const;
   void find_forces();
-  void force_on(int field, int i, double *f) const;
   double power_on(int field, int i, double half) const;
   void note_loaded(int end);
   void note(int field, int i, int turns);

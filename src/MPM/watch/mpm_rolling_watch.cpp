@@ -22,8 +22,8 @@
 
 using namespace LAMMPS_NS;
 
-/** Has the point turned by an angle whose sine is more than this, or by a right angle or more, and is
- *  it hardly strained [change of squared lengths]? */
+/** Has the point turned by an angle whose sine is more than this, or by a right angle or more, and
+ *  is it hardly strained [change of squared lengths]? */
 static bool is_turned(const double *F)
 {
   constexpr double SINE = 0.2, STRAIN = 0.1;

@@ -14,9 +14,9 @@
 namespace LAMMPS_NS {
 class MPMField;
 
-/** Warns of round bodies that turn where friction acts, and turn too slowly: those whose surface has
- *  the steps of a lattice of points, which roll from edge to edge as a wheel without a rim, and those
- *  with a small radius for the node spacing. */
+/** Warns of round bodies that turn where friction acts, and turn too slowly: those whose surface
+ *  has the steps of a lattice of points, which roll from edge to edge as a wheel without a rim, and
+ *  those with a small radius for the node spacing. */
 class MPMRollingWatch : protected Pointers {
  public:
   MPMRollingWatch(class LAMMPS *lmp, const MPMField &field) : Pointers(lmp), field(field) {}
