@@ -312,6 +312,52 @@ SERIAL_TEST(RigidCollision, EdgesMeet)
   EXPECT_NEAR(run.fix("floor")->compute_vector(2), -4.0, 1e-11);
 }
 
+// The tip of a cone is sharp, however small the angles between the faces that meet there: a cone
+// that leans by 20 degrees stands with its tip on the floor
+SERIAL_TEST(RigidCollision, ConeStandsOnItsTip)
+{
+  for (const int n : {8, 16, 64}) {
+    Soup cone;
+    const auto rim = [n](int k) {
+      return Point{1.5 * cos(2.0 * PI * k / n), 1.5 * sin(2.0 * PI * k / n), 2.0};
+    };
+    for (int k = 0; k < n; k++) {
+      cone.push_back({Point{0.0, 0.0, 0.0}, rim(k + 1), rim(k)});
+      cone.push_back({Point{0.0, 0.0, 2.0}, rim(k), rim(k + 1)});
+    }
+    const ScratchFile file("cone.stl", text_of(cone));
+    Scene run(one_body(file.name, "3 3 0.1 turn 20 0 1 0", "gravity 0 0 -1 hold rx ry rz") +
+              floor_with + "slip\ntimestep 0.01\nrun 300 post no\n");
+    auto *fix = run.fix("tool");
+    EXPECT_NEAR(fix->compute_vector(2), 1.5 * cos(PI / 9.0), 1e-8) << n;
+    EXPECT_LT(fabs(fix->compute_vector(5)), 1e-12) << n;
+    const double mass = MPM_NS::SurfaceMesh(text_of(cone), "cone", 1.0, {0, 0, 0}).volume * 2.0;
+    EXPECT_NEAR(run.fix("floor")->compute_vector(2), -mass, 1e-9 * mass) << n;
+  }
+}
+
+// Edges of walls that intersections of regions make bear bodies: a ball on the rim of a round hole,
+// whose cylinder is longer than the plate is thick, or ends with it
+SERIAL_TEST(RigidCollision, BallOnAHole)
+{
+  const ScratchFile file("ball.stl", text_of(ball(1.0, 3)));
+  const double z = 3.0 + sqrt(1.0 - 0.7 * 0.7);
+  const double weight =
+      2.0 * MPM_NS::SurfaceMesh(text_of(ball(1.0, 3)), "ball", 1.0, {0, 0, 0}).volume;
+  for (const char *ends : {"INF INF", "2 3"}) {
+    SCOPED_TRACE(ends);
+    Scene run(one_body(file.name, strprintf("3 3 %.15g", z + 0.01), "gravity 0 0 -1") +
+              "region slab block 0 6 0 6 2 3\nregion hole cylinder z 3 3 0.7 " + ends +
+              " side out\nregion plate intersect 2 slab hole\n"
+              "fix plate all mpm/boundary region plate separate friction 0.3\n"
+              "timestep 0.005\nrun 600 post no\n");
+    auto *fix = run.fix("tool");
+    EXPECT_NEAR(measured("height/exact", fix->compute_vector(2) / z), 1.0, 2e-3);
+    EXPECT_NEAR(run.fix("plate")->compute_vector(2), -weight, 0.01 * weight);
+    EXPECT_NEAR(fix->compute_vector(0), 3.0, 2e-3);
+  }
+}
+
 // A light plate on an elastic block next to a wall bears what the block presses on it
 SERIAL_TEST(RigidCollision, WallsHoldAPlateAgainstMaterial)
 {

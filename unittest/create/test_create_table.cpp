@@ -266,6 +266,27 @@ TEST(Text, History)
   EXPECT_EQ(run.evaluate("c_s[3]"), 10.0);
 }
 
+// Gas that is hotter than that of its material has the pressure and the energy of this temperature,
+// and the first step knows its speed of sound
+TEST(Text, HotGas)
+{
+  const ScratchFile file("points", "x,y,volume0,temperature\n0.5,0.5,0.01,3000\n");
+  double speed[2], pressure[2];
+  for (const bool by_table : {true, false}) {
+    Scene run(flat + "fix m all mpm/material density 1.2 eos ideal/gas 1.4 pressure " +
+              (by_table ? "1e5" : "1e6") + " thermal conducting 694.444444444444 " +
+              (by_table ? "300" : "3000") + " 0.02\nfix h all mpm/heat\n" +
+              "create_points 1 table " + file.name +
+              "\ncompute p all mpm/atom pressure wavespeed\n"
+              "compute s all reduce sum c_p[1] c_p[2]\nthermo_style custom step c_s[1] c_s[2]\n"
+              "run 0\n");
+    pressure[by_table] = run.evaluate("c_s[1]");
+    speed[by_table] = run.evaluate("c_s[2]");
+  }
+  EXPECT_NEAR(pressure[1], pressure[0], 1e-9 * pressure[0]);
+  EXPECT_NEAR(speed[1], speed[0], 1e-9 * speed[0]);
+}
+
 TEST(Mistakes, InText)
 {
   if (nranks() > 1) GTEST_SKIP() << "one rank is enough";

@@ -359,6 +359,24 @@ SERIAL_PARAMETER_TEST(Gas, ExpandsAsAnIsentrope, const char *,
   EXPECT_THAT(log, HasSubstr(TOO_FEW));    // a line of the summary
 }
 
+// A shock that stops a cold gas (W.F. Noh, J. Comput. Phys. 72 (1987) 78; in a plane: p = 4/3,
+// density 4) makes pressures that differ, of points whose volumes fit the room: nothing is told
+SERIAL_TEST(Gas, ShockIsNotTold)
+{
+  Scene run(box(2, "si", "f p p", "0 1.2 0 0.025 -0.5 0.5", 1, 0.005) +
+            body("block 0 1 INF INF INF INF",
+                 "density 1 eos ideal/gas 1.6666666667 pressure 1e-4 viscosity artificial 2 1",
+                 "0.0125", "4") +
+            "fix w all mpm/boundary xlo slip\nvelocity all set -1 0 0\n"
+            "fix step all mpm/dt 0.3 until 0.4\ncompute a all mpm/atom pressure\n"
+            "region in block 0.04 0.1 INF INF INF INF\ncompute p all reduce/region in ave c_a\n"
+            "thermo_style custom step c_p\n");
+  const std::string log = log_of(run, "run 10000\n");
+  EXPECT_NEAR(measured("pressure", run.evaluate("c_p")), 4.0 / 3.0, 0.03 * 4.0 / 3.0);
+  EXPECT_GT(number_after(TOO_FEW, log), 0.05);
+  EXPECT_THAT(log, Not(HasSubstr("WARNING")));
+}
+
 // With two points per cell and axis, they run away from each other
 SERIAL_PARAMETER_TEST(ThinGas, OfTooFewPointsIsTold, const char *,
                       Values("transfer apic", "transfer aflip 1.0", "transfer flip 1.0"))

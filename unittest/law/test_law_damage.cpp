@@ -191,7 +191,10 @@ TEST(DamageEnergy, BalanceThroughFailure)
   const std::string sudden = STEEL + "damage johnson/cook 0.004 0.002 -1.5 ";
   const std::string brittle = "density 2400 eos shock 3000 1.4 1.5 strength elastic 1.5e10 damage "
                               "rankine 1e8 ";
-  for (const auto &law : {soft, sudden, brittle, brittle + "soften energy 2e3 "})
+  // whose elastic energy is a sum over the steps
+  const std::string summed = "density 8930 eos linear 138e9 strength steinberg 47.7e9 "
+                             "0.12e9 36 0.45 0.64e9 0 0 damage johnson/cook 0.004 0.002 -1.5 ";
+  for (const auto &law : {soft, sudden, brittle, brittle + "soften energy 2e3 ", summed})
     for (const char *after : {"after none", "", "after friction 0.4"}) {
       SCOPED_TRACE(law + after);
       const auto material = make(law + after);
@@ -210,7 +213,8 @@ TEST(DamageEnergy, BalanceThroughFailure)
       }
       EXPECT_GT(fracture, 0.01 * scale);
       for (int level = 0; level < 3; level++)
-        EXPECT_LT(error[level], 6e-5 / (1 << 4 * level) * scale) << level;
+        EXPECT_LT(error[level], (law == summed ? 7.5e-5 : 6e-5) / (1 << 4 * level) * scale)
+            << level;
     }
 }
 

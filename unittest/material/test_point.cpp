@@ -269,6 +269,101 @@ TEST(Point, Shock)
   }
 }
 
+// Gases have other Hugoniots than isentropes: (p + PINF)/(p0 + PINF) = [(G+1) - (G-1) J]/[(G+1) J -
+// (G-1)], with the pressure ahead in all jump conditions
+TEST(Point, ShockInGas)
+{
+  struct Gas {
+    const char *words;
+    double density, gamma, p0, pinf;
+  };
+  for (const Gas &gas : {Gas{"ideal/gas 1.4 pressure 1e5", 1.2, 1.4, 1e5, 0.0},
+                         Gas{"stiffened/gas 4.4 6e8", 1000.0, 4.4, 0.0, 6e8},
+                         Gas{"stiffened/gas 4.4 6e8 pressure 1e8", 1000.0, 4.4, 1e8, 6e8}}) {
+    SCOPED_TRACE(gas.words);
+    auto t = drive(fmt::format("shock -1e6 strain 0.4 steps 20 material density {} eos {}",
+                               gas.density, gas.words));
+    for (size_t k = 1; k < 21; k++) {
+      const double J = std::exp(-0.02 * k), up = gas.gamma + 1.0, down = gas.gamma - 1.0;
+      const double p = (gas.p0 + gas.pinf) * (up - down * J) / (up * J - down) - gas.pinf;
+      const double us = std::sqrt((p - gas.p0) / (gas.density * (1.0 - J)));
+      EXPECT_NEAR(-t["sxx"][k], p, 1e-9 * p) << k;
+      EXPECT_NEAR(t["us"][k], us, 1e-9 * us) << k;
+      EXPECT_NEAR(t["up"][k], us * (1.0 - J), 1e-9 * us) << k;
+      EXPECT_NEAR(t["jump"][k], 0.5 * (p + gas.p0) * (1.0 - J), 1e-9 * t["jump"].back()) << k;
+    }
+  }
+  // that of an ideal gas is its pressure times its volume
+  auto t = drive("shock -1e6 strain 1 steps 1 material density 1.2 eos ideal/gas 1.4 pressure 1e5 "
+                 "thermal adiabatic 694.444444444444 300");
+  const double J = std::exp(-1.0), p = 1e5 * (2.4 - 0.4 * J) / (2.4 * J - 0.4);
+  EXPECT_NEAR(t["temperature"][1], 300.0 * p * J / 1e5, 1e-6 * 300.0);
+}
+
+// What a shock dissipates warms the solid: its temperature is that of the isentrope, T0 exp(GAMMA0
+// (1 - J)), and of the energy between the isentrope and the Hugoniot. A strength sees that.
+TEST(Point, ShockWarms)
+{
+  const double rho = 8930.0, c0 = 3940.0, s = 1.49, gamma = 1.96, cp = 383.0, T0 = 300.0;
+  const std::string copper = "density 8930 eos shock 3940 1.49 1.96 ";
+  const std::string thermal = "thermal adiabatic 383 300 0.9 gruneisen 1.96";
+  auto t = drive("shock -1e6 strain 0.3 steps 10 material " + copper + thermal);
+  double energy = 0.0, eta = 0.0;    // of the isentrope, by the rule of Heun
+  constexpr int PARTS = 2000;
+  const auto hugoniot = [=](double x) {
+    return rho * c0 * c0 * x / ((1.0 - s * x) * (1.0 - s * x));
+  };
+  for (int k = 1; k <= 10; k++) {
+    const double step = (1.0 - std::exp(-0.03 * k) - eta) / PARTS;
+    for (int m = 0; m < PARTS; m++) {
+      const auto pressure = [&](double x, double e) {
+        return hugoniot(x) * (1.0 - 0.5 * gamma * x) + gamma * e;
+      };
+      const double first = pressure(eta, energy);
+      energy += 0.5 * step * (first + pressure(eta + step, energy + step * first));
+      eta += step;
+    }
+    const double jump = 0.5 * hugoniot(eta) * eta;
+    const double T = T0 * std::exp(gamma * eta) + (jump - energy) / (rho * cp);
+    EXPECT_NEAR(t["temperature"][k], T, 1e-3 * (T - T0)) << k;
+    EXPECT_NEAR(t["jump"][k], jump, 1e-9 * t["jump"].back()) << k;
+  }
+  EXPECT_GT(t["temperature"][10], 900.0);
+  // Y0 (1 + A p/(1 - eta)^(-1/3) - B (T - 300)) without hardening
+  auto hard = drive("shock -1e6 strain 0.2 steps 2 material " + copper +
+                    "strength steinberg 47.7e9 0.12e9 0 1 0.64e9 2.83e-11 3.77e-4 " + thermal);
+  const double p = hard["pressure"][2], J = hard["J"][2];
+  const double Y =
+      0.12e9 * (1.0 + 2.83e-11 * p * std::cbrt(J) - 3.77e-4 * (hard["temperature"][2] - 300.0));
+  EXPECT_NEAR(hard["vonmises"][2], Y, 0.02 * Y);
+  EXPECT_GT(Y, 1.5 * 0.12e9);
+}
+
+// An energy that the equation of state has at the start is none of tension, which damage releases
+TEST(Point, DamageOfWhatHasEnergyAtTheStart)
+{
+  const std::string path = "uniaxial/strain 1e2 strain 0.01 steps 2000 length 0.01 material "
+                           "density 8930 ",
+                    rest = " strength elastic 45e9 damage rankine 4e8 soften energy 1e5";
+  for (const char *eos : {"eos linear 132e9", "eos stiffened/gas 4.4 30e9",
+                          "eos polynomial 132e9 0 0 1.5 1.5 energy 1e7"}) {
+    auto t = drive(path + eos + rest);
+    const double most = *std::max_element(t["sxx"].begin(), t["sxx"].end());
+    EXPECT_NEAR(most, 4e8, 0.003 * 4e8) << eos;
+  }
+}
+
+// An elastic energy that is kept as a sum, such as that of Steinberg and Guinan, is no number that
+// may have a root where it vanishes
+TEST(Point, DamageOfSteinberg)
+{
+  auto t = drive("mixed time 2e-4 steps 400 clock t xx rate v_rate yy rate 0 zz rate 0 material "
+                 "density 8930 eos shock 3940 1.49 1.96 strength steinberg 47.7e9 0.12e9 36 0.45 "
+                 "0.64e9 2.83e-11 3.77e-4 damage rankine 1e13 thermal adiabatic 383 300 0.9",
+                 "units si\nvariable t internal 0\nvariable rate equal 1000*cos(5e4*v_t)\n");
+  for (const double T : t["temperature"]) EXPECT_TRUE(std::isfinite(T));
+}
+
 TEST(Point, RotationAndTemperature)
 {
   const std::string steel =
@@ -401,6 +496,10 @@ TEST(Point, ErrorsNameTheRemedy)
       {"mpm_point NULL shock -1 strain 0.1 cycle 1 1" + rubber, "needs only one of"},
       {"mpm_point NULL shock -1 strain 0.1 rotate 0 0 1 1" + rubber, "cycle and rotate do not go"},
       {"mpm_point NULL shock -1 strain 0.1 yy stress 0" + rubber, "use uniaxial/strain"},
+      {"mpm_point NULL uniaxial/strain -1 strain 0.1 temperature 2000 material density 1 eos "
+       "linear "
+       "9 strength elastic 3 thermal adiabatic 1 300 0.9 melt 1000 200",
+       "give T0 of its thermal part instead"},
       {"mpm_point NULL shear 1 time 1 material", "density is missing"},
       {"mpm_point NULL shear 1 time 1 material density 1 linear 1e6 0.6",
        "Mpm_point: linear: NU = 0.6 (Poisson's ratio) is out of range"},

@@ -1066,6 +1066,43 @@ TEST(Melting, PartsShareTheStress)
   EXPECT_NEAR(p.stored_energy() + p.work[PLASTIC], stored, 1e-12 * stored);
 }
 
+// Warming takes energy of a shear that a softer modulus no longer stores, also where a damage keeps
+// that energy: with half of it lost, half as much
+TEST(Damage, KeepsTheEnergyOfWarming)
+{
+  const std::string metal = "density 8930 eos linear 130e9 strength elastic 45e9 ",
+                    thermal = "thermal adiabatic 383 298 0.9 vary strength.G table 298 1 498 0.5";
+  Point plain(metal + thermal), whole(metal + "damage rankine 1e13 " + thermal),
+      half(metal + "damage rankine 1e13 " + thermal);
+  half.batch.history[row(half.material, "damage")][0] = 0.5;
+  for (auto *p : {&plain, &whole, &half}) {
+    steps(*p, {0, 0.01, 0, 0.01, 0, 0, 0, 0, 0}, 1.0);
+    p->batch.history[row(p->material, "temperature")][0] = 398.0;
+    steps(*p, {}, 1.0);
+  }
+  EXPECT_GT(std::fabs(plain.work[THERMOELASTIC]), 1e5);
+  EXPECT_NEAR(whole.work[THERMOELASTIC], plain.work[THERMOELASTIC],
+              1e-9 * std::fabs(plain.work[THERMOELASTIC]));
+  EXPECT_NEAR(half.work[THERMOELASTIC], 0.5 * plain.work[THERMOELASTIC],
+              1e-9 * std::fabs(plain.work[THERMOELASTIC]));
+}
+
+// Two parts that take the energy of one tension, or release one energy again and again
+TEST(Damage, PairsThatCountTwiceAreRefused)
+{
+  const std::string end = " thermal adiabatic 383 298 0.9";
+  expect_refused({{"eos shock 3940 1.49 1.96 spall -1e9 strength elastic 45e9 damage rankine 4e8",
+                   "spall and damage both take the tension"},
+                  {"eos linear 130e9 strength j2 45e9 1e8 kinematic 1e9 10 damage johnson/cook 0.5 "
+                   "1 -1 after friction 0.3",
+                   "leave 'after friction' out"}},
+                 "density 8930 ");
+  for (const char *words :
+       {"eos shock 3940 1.49 1.96 cutoff -1e9 strength elastic 45e9 damage rankine 4e8",
+        "eos linear 130e9 strength j2 45e9 1e8 kinematic 1e9 10 damage johnson/cook 0.5 1 -1"})
+    EXPECT_NO_THROW(make(std::string("density 8930 ") + words + end));
+}
+
 TEST(Melting, EnergyBalance)
 {
   const auto material = make(METAL);

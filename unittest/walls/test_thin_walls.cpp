@@ -593,6 +593,16 @@ TEST(Surfaces, EdgesBetweenParts)
         for (int k = 0; k < 3; k++) square += std::pow(std::min(x[k], 0.0), 2);
         if (square > 0.0) EXPECT_NEAR(d, std::sqrt(square), 1.0e-6);
       });
+  for (const std::string ends : {"-0.5 0.5", "-1 1", "INF INF"})
+    each_distance("region a block -3 3 -3 3 -0.5 0.5\nregion b cylinder z 0 0 0.7 " + ends +
+                      " side out\nregion it intersect 2 a b\n",
+                  [&](const double *x, double d) {    // the rim of a hole
+                    const double out = std::fabs(x[2]) - 0.5, in = 0.7 - std::hypot(x[0], x[1]);
+                    if (out > 0.4 || in > 0.69) return;    // outside of the cylinder, on the axis
+                    if (out > 0.0 || in > 0.0)
+                      EXPECT_NEAR(d, std::hypot(std::max(out, 0.0), std::max(in, 0.0)), 1.0e-6)
+                          << ends << " " << x[0] << " " << x[1] << " " << x[2];
+                  });
   // what is nearer than the limit is found, and nothing else
   Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") +
             "region a plane 0 0 0 -1 0 -1\nregion b plane 0 0 0 1 0 -1\n"

@@ -99,8 +99,12 @@ void LAMMPS_NS::give_initial_stress(MPMField &field, int first)
     load_state(field, batch, list.data(), (int) list.size(), material);
     batch.time = elapsed_time(*field.lmp->update);
     material->material->initial_stress(batch);
-    for (std::size_t k = 0; k < list.size(); k++)
+    for (std::size_t k = 0; k < list.size(); k++) {
       for (int c = 0; c < 6; c++) tau[list[k]][c] = batch.J[k] * batch.stress[c][k];
+      // the energy of what begins at another temperature than that of its material
+      for (std::size_t m = 0; m < material->material->history().size(); m++)
+        material->history[list[k]][m] = batch.history[m][k];
+    }
     list.clear();
   };
 

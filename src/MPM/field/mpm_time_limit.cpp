@@ -269,8 +269,9 @@ void MPMTimeLimit::warn_of_small() const
                      dt, update->unit_style, limit);
     return;
   }
-  const bool free = !force->pair && field.elements.empty() && field.plan->physics.empty();
-  if (free && dt < SMALL * limit)
+  const bool alone = !force->pair && field.elements.empty() && field.plan->physics.empty() &&
+      find_fixes(lmp, {"^mpm/rigid$"}).empty();    // bodies that turn have a limit of their own
+  if (alone && dt < SMALL * limit)
     error->warning(FLERR,
                    "Fix mpm: the time step {:.3g} is far below the limit {:.3g} of these points: "
                    "fix mpm/dt 0.5 would take {:.0f} times fewer steps",

@@ -105,8 +105,9 @@ namespace {
         const double slip = tau > hold ? hold / tau : 1.0;
         const double kept0 = b.kept[i], kept = failed > 0.0 ? slip : 1.0 - D;
         const double stored = failed > 0.0 ? slip * slip : 1.0 - D;
-        const double shear =
-            (kept - stored) * ws + (kept0 - kept) * std::sqrt(ws * history[SHEAR_ENERGY][i]);
+        // the energy of a strength that is kept as a sum can fall below zero by its rounding
+        const double between = std::sqrt(max(ws * history[SHEAR_ENERGY][i], 0.0));
+        const double shear = (kept - stored) * ws + (kept0 - kept) * between;
         history[SHEAR_ENERGY][i] = failed > 0.0 ? stored * ws : ws;
 
         // tension: its energy at the start follows from that at the end and the work of the step

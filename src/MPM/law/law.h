@@ -142,6 +142,9 @@ struct LawInfo {
    *  internal energy and the dissipated part of it. The heat of conduction and of damage is added
    *  to both before the update. */
   bool finds_temperature;
+  /** Strengths: history variable that is the elastic energy, as a sum over steps; -1: the energy
+   *  follows from the stress. */
+  int energy_kept;
   /** Of a closed law: does it carry no stress across the plane of its axes 1 and 2, so that it can
    *  be used for surfaces only? */
   bool of_surfaces;
@@ -226,7 +229,7 @@ struct LawDefaults {
   static constexpr StressShare share = NO_SHARE;
   static constexpr bool uses_speed = true, uses_F = true, expands = false,
                         finds_temperature = false, of_surfaces = false;
-  static constexpr int gruneisen = -1;
+  static constexpr int gruneisen = -1, energy_kept = -1;
   static constexpr const char *term = nullptr;
   static constexpr std::nullptr_t term_parameters = nullptr, history = nullptr,
                                   term_history = nullptr, nhistory = nullptr;
@@ -261,7 +264,7 @@ struct LawVersion {
   int interface;    ///< raised with each change of the interface of laws and package
   int batch, info, kernels, parameters, conduction;
 };
-constexpr LawVersion law_version{8,
+constexpr LawVersion law_version{9,
                                  sizeof(Batch),
                                  sizeof(LawInfo),
                                  sizeof(LawKernels),
@@ -314,6 +317,7 @@ namespace law {
       info.uses_F = Law::uses_F;
       info.expands = Law::expands;
       info.finds_temperature = Law::finds_temperature;
+      info.energy_kept = Law::energy_kept;
       info.of_surfaces = Law::of_surfaces;
       info.gruneisen = Law::gruneisen;
       info.check = Law::check;

@@ -250,6 +250,7 @@ namespace {
         {"tref", "TREF", "temperature", NOT_NEGATIVE, 300.0, "reference temperature"}};
     static constexpr HistoryDeclaration history[] = {
         PLASTIC_STRAIN, {"shear_energy", ZERO, "pressure", "elastic energy of the deviator"}};
+    static constexpr int energy_kept = 1;
     static constexpr bool needs_temperature(const LawParameters &p)
     {
       return p.value[SCG_B] > 0.0 || p.value[SCG_MELT] > 0.0;

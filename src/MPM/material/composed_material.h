@@ -319,6 +319,9 @@ class ComposedMaterial : public Material {
                          const double *x, double *history);
   static void check_range(const Parameter &declared, double value);
   /** History of a law at a new point with these parameters. */
+  /** Energy that the equation of state has, without its dissipated part; history of a point, with
+   *  this stride. */
+  double internal_energy(const double *history, int stride) const;
   static void initialize(const UsedLaw &law, const LawParameters &p, const double *x,
                          double *history);
   static bool is_capacity(const Parameter &declared) { return !strcmp(declared.name, "CP"); }

@@ -245,8 +245,21 @@ void ComposedMaterial::add_energy_of_warming(Batch &b, const double *before,
         return law.part != THERMAL && !law.varying.empty();
       })) {
     std::copy(at, at + b.n, T);
+    // a damage keeps the energy of the strength, which goes with that of the stress
+    double *const kept = damage ? b.history[damage->history + law::SHEAR_ENERGY] : nullptr;
+    double shear[BATCH], cold[BATCH] = {}, warm[BATCH] = {};
+    if (kept) {
+      std::copy(kept, kept + b.n, shear);
+      add_energy(base, b, warm);
+    }
     std::copy(before, before + b.n, at);
+    if (kept) {
+      add_energy(base, b, cold);
+      for (int i = 0; i < b.n; i++)
+        if (warm[i] > 0.0) kept[i] *= cold[i] / warm[i];
+    }
     energy_of_laws(b, old);
+    if (kept) std::copy(shear, shear + b.n, kept);
     std::copy(T, T + b.n, at);
   }
   for (int i = 0; i < b.n; i++)

@@ -8,6 +8,7 @@
 
 // A step of a material: the order in which its laws work on a batch.
 
+#include "law/damage.h"
 #include "material/composed_material.h"
 
 #include <algorithm>
@@ -84,6 +85,8 @@ void ComposedMaterial::initial_stress(Batch &b) const
     // what had burnt from the start is warm without that anything has been conducted
     run_eos(b, nullptr);
     remember_heat(b);
+    for (int i = 0; i < b.n && damage; i++)
+      b.history[damage->history + law::REST_ENERGY][i] = internal_energy(&b.history[0][i], BATCH);
     return;
   }
   if (!expands) {
@@ -210,13 +213,15 @@ void ComposedMaterial::find_temperature(Batch &b) const
 
 void ComposedMaterial::run_damage(Batch &b) const
 {
-  if (unspent_heat < 0) {
-    run(damage, b);
-    return;
-  }
-  double before[BATCH], *const rest = b.history[unspent_heat];
-  std::copy_n(b.heat, b.n, before);
+  if (!damage) return;
+  double before[BATCH];
+  if (unspent_heat >= 0) std::copy_n(b.heat, b.n, before);
   run(damage, b);
+  // what a slip of failed points releases is no longer there in the next step
+  if (const int kept = base->info->energy_kept; kept >= 0)
+    std::copy_n(rows(b, *damage)[law::SHEAR_ENERGY], b.n, b.history[base->history + kept]);
+  if (unspent_heat < 0) return;
+  double *const rest = b.history[unspent_heat];
   for (int i = 0; i < b.n; i++) rest[i] += b.heat[i] - before[i];
 }
 

@@ -9,6 +9,7 @@
 // Parameters of a material that differ between points: random ones, and those that depend on
 // temperature.
 
+#include "law/damage.h"
 #include "material/composed_material.h"
 #include "material/random_field.h"
 
@@ -94,6 +95,14 @@ void ComposedMaterial::initialize(const double *x, double *history) const
     }
   if (solid >= 0) history[solid] = 1.0 - history[molten];
   for (int k = 0; k < nheated; k++) history[heated + k] = history[thermal->history + k];
+  if (damage && eos->info->expands)
+    history[damage->history + law::REST_ENERGY] = internal_energy(history, 1);
+}
+
+double ComposedMaterial::internal_energy(const double *history, int stride) const
+{
+  const double *const energy = history + stride * eos->history;
+  return energy[0] - energy[stride];
 }
 
 void ComposedMaterial::initialize(const UsedLaw &law, const LawParameters &p, const double *x,

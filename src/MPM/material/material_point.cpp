@@ -74,7 +74,12 @@ void MaterialPoint::step(const double *L, double dt)
   move(A, dt);
 }
 
-void MaterialPoint::move(const double *A, double dt)
+double MaterialPoint::internal_energy() const
+{
+  return stored_energy() + work[PLASTIC] + work[VISCOUS] + work[FRACTURE];
+}
+
+void MaterialPoint::move(const double *A, double dt, double heat)
 {
   double before[9], after[9], dF[9];
   first_piola(batch, before);
@@ -93,7 +98,7 @@ void MaterialPoint::move(const double *A, double dt)
     batch.Jold[p] = batch.J[p];
     batch.J[p] = determinant(F);
   }
-  std::fill_n(batch.heat, batch.n, 0.0);
+  std::fill_n(batch.heat, batch.n, heat);
   material.update(batch);
 
   first_piola(batch, after);

@@ -38,8 +38,10 @@ class MaterialPoint {
   /** One step with the velocity gradient L[9] (row-major) at the middle of the step. */
   void step(const double *L, double dt);
 
-  /** One step of the motion F_new = (I + A) F. */
-  void move(const double *A, double dt);
+  /** One step of the motion F_new = (I + A) F, with this heat from outside per reference volume. */
+  void move(const double *A, double dt, double heat = 0.0);
+  /** Stored energy and all that has become heat or fracture so far, per reference volume. */
+  double internal_energy() const;
 
   /** One step of a partly known motion; throws std::runtime_error if no motion gives the stress.
    *  rotation: rotation at the end of the step of the frame to which the control refers (row-major;

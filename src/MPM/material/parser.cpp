@@ -382,6 +382,9 @@ class Parser {
       const UsedLaw &law = material.laws[part][0];
       fail(law.word, "'" + title(law) + "'" + why);
     };
+    const auto gives = [&](Part part, const char *option) {
+      return has(part) && has_option(material.laws[part][0], option);
+    };
     if (material.density <= 0.0) fail(end, "density is missing: add 'density RHO'");
     if (has(CLOSED)) {
       const std::string name = title(material.laws[CLOSED][0]);
@@ -402,6 +405,14 @@ class Parser {
     if (has(DAMAGE) && !has(STRENGTH))
       refuse(DAMAGE,
              " reduces the stress of a solid: add a strength, such as 'strength elastic G'");
+    if (has(DAMAGE) && gives(EOS, "spall"))
+      refuse(DAMAGE,
+             ": spall and damage both take the tension of a point, and its energy: leave one of "
+             "them out; 'damage rankine' breaks at a tensile stress, too");
+    if (gives(DAMAGE, "after friction") && gives(STRENGTH, "kinematic"))
+      refuse(DAMAGE,
+             ": after friction is not for kinematic hardening, whose energy would be released "
+             "again in each step of a slip: leave 'after friction' out");
     for (const auto &part : material.laws)
       for (const auto &law : part)
         if (law.info->needs_temperature(law.parameters) && !has(THERMAL))

@@ -256,7 +256,10 @@ void FixMPMMesh::give_initial_stress()
         return s == 0.0;
       });
       if (material->damage >= 0 && material->history[list[p]][material->damage] >= 1.0) continue;
-      for (int c = 0; c < 6 && none; c++) tau[c] = body->batch->J[p] * body->batch->stress[c][p];
+      if (!none) continue;
+      for (int c = 0; c < 6; c++) tau[c] = body->batch->J[p] * body->batch->stress[c][p];
+      for (std::size_t m = 0; m < material->material->history().size(); m++)
+        material->history[list[p]][m] = body->batch->history[m][p];
     }
   });
 }

@@ -283,18 +283,38 @@ void MPMPoint::run_path(MaterialPoint &point)
   }
 }
 
-/** States behind shocks of growing strength: each is reached from the initial state in one step,
- *  for which the work of the mean stress is the jump condition of energy (Rankine, Hugoniot). */
+/** States behind shocks of growing strength: each is reached from the initial state by a smooth
+ *  compression, and by the heat that is missing in the jump condition of energy (Rankine, Hugoniot)
+ *  in a moment after that. */
 void MPMPoint::run_shock(MaterialPoint &initial)
 {
+  constexpr int PARTS = 100, MOST = 50;
+  constexpr double ROUND_OFF = 1.0e-13, MOMENT = 1.0e-6;
   write(initial, 0);
+  initial_pressure = -initial.stress(0);
+  const double start = initial.internal_energy();
   for (bigint step = 1; step <= nsteps; step++) {
-    const double t = duration * step / nsteps;
-    MaterialPoint point(initial);
-    const double A[9] = {expm1(rate * t)};
-    point.move(A, t);
-    check(point, step);
-    write(point, step);
+    const double t = duration * step / nsteps / PARTS, A[9] = {expm1(rate * t)}, none[9] = {};
+    MaterialPoint before(initial);
+    for (int k = 0; k < PARTS; k++) before.move(A, t);
+    double heat = 0.0, missing = 0.0, last_heat = 0.0, last_missing = 0.0;
+    for (int k = 0; k < MOST; k++) {
+      MaterialPoint point(before);
+      point.move(none, MOMENT * t, heat);
+      const double jump = 0.5 * (initial_pressure - point.stress(0)) * (1.0 - point.batch.J[0]);
+      missing = jump - (point.internal_energy() - start);
+      if (!(std::fabs(missing) > ROUND_OFF * std::fabs(jump))) break;
+      const double next = k == 0 ? heat + missing
+                                 : heat - missing * (heat - last_heat) / (missing - last_missing);
+      if (next == heat || !std::isfinite(next)) break;
+      last_heat = heat;
+      last_missing = missing;
+      heat = next;
+    }
+    before.move(none, MOMENT * t, heat);
+    before.time = duration * step / nsteps;
+    check(before, step);
+    write(before, step);
   }
 }
 
@@ -305,6 +325,15 @@ void MPMPoint::set_temperature(MaterialPoint &point)
   for (std::size_t k = 0; k < variables.size(); k++)
     if (variables[k].name == "temperature") {
       point.batch.history[k][0] = temperature;
+      MaterialPoint rest(point);
+      const double none[9] = {};
+      rest.move(none, 1.0e-6 * duration);
+      if (std::fabs(rest.history(k) - temperature) > 1.0e-6 * std::fabs(temperature))
+        error->all(FLERR,
+                   "Mpm_point temperature {}: the temperature of this material belongs to its "
+                   "energy, or to what has melted, and would be {:.6g} in the first step: give T0 "
+                   "of its thermal part instead",
+                   temperature, rest.history(k));
       return;
     }
   error->all(FLERR,
@@ -318,8 +347,8 @@ void MPMPoint::check(const MaterialPoint &point, bigint step)
   double sum = point.batch.J[0];
   for (int k = 0; k < 6; k++) sum += point.stress(k);
   if (!std::isfinite(sum) || !(point.batch.J[0] > 0.0))
-    error->all(FLERR, "Mpm_point: step {} at time {:.6g}: the state is not finite; use more steps",
-               step, point.time);
+    error->all(FLERR, "Mpm_point: step {} at time {:.6g}: the state is not finite; use {}", step,
+               point.time, path == SHOCK ? "a smaller strain" : "more steps");
 
   for (std::size_t k = 0; k < range_left.size(); k++) {
     double value[BATCH];
@@ -408,11 +437,11 @@ std::vector<std::pair<std::string, double>> MPMPoint::row(const MaterialPoint &p
   add("wavespeed", point.wave_speed());
   if (path == SHOCK) {
     // jump conditions of mass, momentum, and energy with the stress along the shock's normal
-    const double P = -stress[0], eta = 1.0 - point.batch.J[0];
+    const double P0 = initial_pressure, P = -stress[0] - P0, eta = 1.0 - point.batch.J[0];
     const double density = point.density() * force->mvv2e * force->nktv2p;
     add("us", eta > 0.0 ? sqrt(P / (density * eta)) : point.wave_speed());
     add("up", sqrt(std::max(0.0, P * eta) / density));
-    add("jump", 0.5 * P * eta);
+    add("jump", (0.5 * P + P0) * eta);
   }
   for (std::size_t k = 0; k < material->history().size(); k++)
     add(material->history()[k].name, point.history(k));

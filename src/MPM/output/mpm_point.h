@@ -78,6 +78,7 @@ class MPMPoint : public Command, private MPMPointOptions {
   std::vector<bool> range_left;
   FILE *fp = nullptr;
   bigint iterations = 0;
+  double initial_pressure = 0.0;    // along the normal of a shock, ahead of it
 
   void parse(int, char **);
   double value_at(const MPM_NS::NumberOrVariable &, double time);

@@ -103,8 +103,12 @@ void MPMRegionSurface::each_contact(const double *x, double far, bool inside, co
       if (leave_out) region->open_faces[end] = 0;
       if (!leave_out) break;
     }
-  } else
-    each(x);
+  } else if (!each(x) && region->interior) {
+    // centers and axes have no nearest place
+    const double off = 1.0e-9 * far;
+    const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
+    each(next);
+  }
   region->interior = interior;
 }
 
@@ -171,7 +175,8 @@ void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
     part.find_places(x, far);
     for (const auto &place : part.places) {
       const bool hidden = std::any_of(parts.begin(), parts.end(), [&](const auto &other) {
-        return &other != &part && other.match(place.x) == is_union;
+        return &other != &part &&
+            (other.match(place.x) == is_union || (!is_union && other.faces(place, x, far)));
       });
       if (!hidden) places.push_back(place);
     }
@@ -179,41 +184,97 @@ void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
   if (places.empty() && in_body == is_union) find_edge(x, far);
 }
 
+/** Is a place, seen from x, on the surface of this region, which faces the other way there, so that
+ *  there is nothing between both? */
+bool MPMRegionSurface::faces(const Place &place, const double *x, double far) const
+{
+  constexpr double SAME = 1.0e-9, STEP = 1.0e-5;    // of far
+  if (!(fabs(find(place.x, SAME * far, false)) < SAME * far)) return false;
+  double n[3], d[3];
+  normal(place.x, far, STEP * far, n);
+  MathExtra::sub3(x, place.x, d);
+  return MathExtra::dot3(n, d) < -0.99 * place.distance;
+}
+
+/** The surface of a part near y as a plane: its normal, outward for side = 1, and the height of y
+ *  above it. Where it faces the plane of another part, as the end of a cylinder that is a hole in a
+ *  plate, the place is taken that is next to nearest. Returns false where there is none. */
+bool MPMRegionSurface::find_plane(const double *y, double far, double side,
+                                  const std::vector<Plane> &others, Plane &plane) const
+{
+  constexpr double STEP = 1.0e-5;    // of far
+  const auto facing = [&](const double *n) {
+    return std::find_if(others.begin(), others.end(), [n](const Plane &other) {
+      return MathExtra::dot3(n, other.n) < -0.99;
+    });
+  };
+  plane.push = 0.0;
+  plane.height = side * find(y, far, false);
+  normal(y, far, STEP * far, plane.n);
+  MathExtra::scale3(side, plane.n);
+  const auto other = facing(plane.n);
+  if (other == others.end()) return fabs(plane.height) < far;
+  double behind[3], nearest = far;
+  for (int d = 0; d < 3; d++) behind[d] = y[d] - (STEP * far + other->height) * other->n[d];
+  const double outward = match(behind) ? -side : side;
+  find_places(behind, far);
+  for (const auto &place : places) {
+    double n[3];
+    MathExtra::sub3(behind, place.x, n);
+    if (!(place.distance < nearest && place.distance > 0.0)) continue;
+    MathExtra::scale3(outward / place.distance, n);
+    if (facing(n) != others.end()) continue;
+    nearest = place.distance;
+    MathExtra::copy3(n, plane.n);
+    plane.height = outward * place.distance;
+    for (int d = 0; d < 3; d++) plane.height += n[d] * (y[d] - behind[d]);
+  }
+  return nearest < far;
+}
+
 /** The place that is nearest to x of those that lie on the far side of all parts, or on their
  *  surfaces: by steps toward x, from which all surfaces, as planes, send back to the nearest place
  *  that they allow (dual variables are found one by one: C. Hildreth, Nav. Res. Logist. Q. 4 (1957)
- *  79). Steps become shorter where an edge bends so that they overshoot. If this does not converge,
- *  the largest distance from a part, which is less. */
+ *  79). Steps become shorter where an edge bends so that they overshoot. Where parts face each
+ *  other, what is found depends on their order, and the last one has a choice. If this does not
+ *  converge, the largest distance from a part, which is less. */
 void MPMRegionSurface::find_edge(const double *x, double far) const
 {
-  constexpr int ROUNDS = 100, SWEEPS = 200;
-  constexpr double STEP = 1.0e-5, CONVERGED = 1.0e-9;    // of far
-  struct Plane {
-    double n[3], height, push;    // height of y above it
-  };
-  std::vector<Plane> planes;
   const double side = is_union ? -1.0 : 1.0;
-  double y[3], least = 0.0, change = far, share = 1.0;
+  double least = 0.0;
+  for (const auto &part : parts) least = std::max(least, side * part.find(x, far, false));
+  if (least >= far) return;
+  for (const bool backward : {false, true}) {
+    double y[3];
+    if (!find_edge_in_order(x, far, side, backward, y)) continue;
+    const double distance = sqrt(MathExtra::distsq3(x, y));
+    if (distance < far) places.push_back({{y[0], y[1], y[2]}, distance});
+    return;
+  }
+  places.push_back({{x[0], x[1], x[2]}, least});
+}
+
+bool MPMRegionSurface::find_edge_in_order(const double *x, double far, double side, bool backward,
+                                          double *y) const
+{
+  constexpr int ROUNDS = 100, SWEEPS = 200;
+  constexpr double CONVERGED = 1.0e-9;    // of far
+  const int n = (int) parts.size();
+  double change = far, share = 1.0;
   std::copy_n(x, 3, y);
   for (int round = 0; round < ROUNDS; round++) {
-    planes.clear();
+    std::vector<Plane> planes;
     double out = 0.0;
-    for (const auto &part : parts) {
-      Plane plane = {};
-      plane.height = side * part.find(y, far, false);
-      if (plane.height <= -far) continue;
-      if (plane.height >= far && round == 0) return;
-      out = std::max(out, plane.height);
-      part.normal(y, far, STEP * far, plane.n);
-      MathExtra::scale3(side, plane.n);
-      planes.push_back(plane);
+    for (int k = 0; k < n; k++) {
+      Plane plane;
+      const auto &part = parts[backward ? n - 1 - k : k];
+      if (part.find_plane(y, far, side, planes, plane)) {
+        planes.push_back(plane);
+        out = std::max(out, plane.height);
+      } else if (plane.height > -far)
+        return false;
     }
-    if (round == 0) least = out;
-    if (change <= CONVERGED * far && out <= CONVERGED * far) {
-      const double distance = sqrt(MathExtra::distsq3(x, y));
-      if (distance < far) places.push_back({{y[0], y[1], y[2]}, distance});
-      return;
-    }
+    if (change <= CONVERGED * far && out <= CONVERGED * far) return true;
     double way[3];
     for (int d = 0; d < 3; d++) way[d] = share * (x[d] - y[d]);
     for (int sweep = 0; sweep < SWEEPS; sweep++)
@@ -227,7 +288,7 @@ void MPMRegionSurface::find_edge(const double *x, double far) const
     if (round > 0 && change > 0.7 * before) share *= 0.5;
     MathExtra::add3(y, way, y);
   }
-  places.push_back({{x[0], x[1], x[2]}, least});
+  return false;
 }
 
 /** The direction to the nearest place on the surface is the gradient, unless x is on the surface,

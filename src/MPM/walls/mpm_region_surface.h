@@ -54,6 +54,10 @@ class MPMRegionSurface {
     double x[3], distance;
   };
 
+  struct Plane {
+    double n[3], height, push;    // push: multiplier of its constraint
+  };
+
   Region *region;
   RegMPMMesh *mesh;
   int dim;
@@ -70,7 +74,11 @@ class MPMRegionSurface {
   void find_sharp_end();
   void find_places(const double *x, double far) const;
   void find_places_of_parts(const double *x, double far) const;
+  bool faces(const Place &, const double *x, double far) const;
+  bool find_plane(const double *y, double far, double side, const std::vector<Plane> &others,
+                  Plane &plane) const;
   void find_edge(const double *x, double far) const;
+  bool find_edge_in_order(const double *x, double far, double side, bool backward, double *y) const;
   template <class F> void each_contact(const double *x, double far, bool inside, const F &f) const;
 };
 
