@@ -358,6 +358,18 @@ TEST(EnergyWatch, KnowsTheWorkOnPointsInside)
   EXPECT_NEAR(run.v()[run.n() - 1][0], 3.0, 1e-12);    // g t
 }
 
+// A cycle of strain that ends where it began: what was in play is the energy within the cycle
+TEST(EnergyWatch, KnowsWhatWasInPlay)
+{
+  Scene run(box(2, "si", "p p p", "0 0.02 0 0.02 -0.005 0.005", 1, 0.005) +
+            "fix grid all mpm 0.01 frame total dtcheck no\ncreate_points 1 box ppc 1\n"
+            "fix m all mpm/material density 8930 eos linear 130e9 strength elastic 45e9 thermal "
+            "adiabatic 383 298 0.9 gruneisen 1.96 vary strength.G table 250 1.2 298 1 400 0.7\n"
+            "variable a equal 0.01*sin(2*PI*step/400)\nvariable b equal 0.005*sin(4*PI*step/400)\n"
+            "fix d all mpm/deform x strain v_a xy strain v_b y strain v_b\ntimestep 2.5e-7\n");
+  EXPECT_THAT(log_of(run, "run 400\n"), Not(HasSubstr("Numerical errors have added")));
+}
+
 // What elements add to the forces on their nodes is the change of their stored energy, and no work
 // from outside. A bar vibrates from v = x until most of its energy is stored
 TEST(EnergyWatch, KnowsForcesOfElements)

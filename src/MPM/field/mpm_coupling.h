@@ -65,7 +65,7 @@ class MPMUncoupled : protected Pointers {
     double h;                        // margin of its extent: node spacing; 0: none
   };
   std::vector<Matter> list;
-  std::vector<std::array<int, 2>> pairs;                 // that nothing couples
+  std::vector<std::array<int, 2>> pairs;                   // that nothing couples
   std::set<std::pair<std::string, std::string>> warned;    // IDs
   const Fix *mine = nullptr;
   bool is_new = false;    // in this run

@@ -46,7 +46,8 @@ static constexpr int ENOUGH = 512;     // points in a step
 static constexpr double MUCH = 4.0;    // power of a point over the mean, that is looked at always
 // steps between looks at all energies: then all had their turn
 static constexpr int CHECK_EVERY = 7 << MOST_BITS;
-static constexpr int SHORTEST = 200;    // run in which the work is known well enough
+static constexpr int PLAY_EVERY = 64;    // the same for what is in play, before the first of these
+static constexpr int SHORTEST = 200;     // run in which the work is known well enough
 static constexpr double AT_REST =
     1.0e-9;    // cells per step: with less than that nothing is in play
 static constexpr double UNSTRAINED = 1.0e-6;    // stored energy over that after the first step
@@ -73,7 +74,10 @@ void MPMEnergyWatch::step()
 {
   const bool centers = strain_follows();
   if (run.steps == 1 && centers) center_start();
-  if (run.steps % CHECK_EVERY == 0) check();
+  if (run.steps % CHECK_EVERY == 0)
+    check();
+  else if (run.steps < CHECK_EVERY && run.steps % PLAY_EVERY == 0)
+    note_play(sums());
   if (centers && ((run.steps + 1) % CHECK_EVERY == 0 || is_last_step())) {
     run.elastic = sums().elastic;
     run.noted = run.steps + 1;
@@ -321,6 +325,14 @@ bool MPMEnergyWatch::is_round_off(double energy) const
   return energy < ROUND_OFF * sqrt((double) run.steps + 1.0) * energy_at_hand();
 }
 
+/** Short runs may end where a load has returned what it gave. */
+void MPMEnergyWatch::note_play(const Sums &now)
+{
+  const double spent = fabs(now.spent - run.start.spent);
+  run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + spent);
+  run.mechanical = std::max(run.mechanical, now.kinetic + fabs(now.stored - now.heat) + spent);
+}
+
 /** Points that other commands have added or removed bring or take energy that is in no account;
  *  that of points which fixes of this package emit and absorb is in the ledger. */
 void MPMEnergyWatch::check()
@@ -330,12 +342,10 @@ void MPMEnergyWatch::check()
   if (run.steps % CHECK_EVERY == 0) choose_turns(now);
   const double ahead = run.noted > 0 && run.noted == run.steps ? 0.5 * (now.elastic - run.elastic)
                                                                : 0.0,
-               spent = now.spent - run.start.spent, unexplained = now.unexplained() - ahead;
+               unexplained = now.unexplained() - ahead;
   run.last = now;
   run.lowest = std::min(run.lowest, unexplained);
-  run.in_play = std::max(run.in_play, now.kinetic + fabs(now.stored) + fabs(spent));
-  run.mechanical =
-      std::max(run.mechanical, now.kinetic + fabs(now.stored - now.heat) + fabs(spent));
+  note_play(now);
   const double gained = run.gained = unexplained - run.lowest;
   const auto &options = fields[0]->options;
   look_for_loss(now.mass);

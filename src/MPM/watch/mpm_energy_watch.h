@@ -125,6 +125,7 @@ class MPMEnergyWatch : public MPMWatch, protected Pointers {
   void center_start();
   void begin(const Sums &);
   void check();
+  void note_play(const Sums &);
   bool only_transfers_take() const;
   void look_for_loss(double mass);
   bool is_much_in_play(double mass) const;
