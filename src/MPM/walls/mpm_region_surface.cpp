@@ -258,7 +258,7 @@ bool MPMRegionSurface::find_edge_in_order(const double *x, double far, double si
                                           double *y) const
 {
   constexpr int ROUNDS = 100, SWEEPS = 200;
-  constexpr double CONVERGED = 1.0e-9;    // of far
+  constexpr double CONVERGED = 1.0e-9, ROUND_OFF = 1.0e-14;    // of far
   const int n = (int) parts.size();
   double change = far, share = 1.0;
   std::copy_n(x, 3, y);
@@ -277,12 +277,16 @@ bool MPMRegionSurface::find_edge_in_order(const double *x, double far, double si
     if (change <= CONVERGED * far && out <= CONVERGED * far) return true;
     double way[3];
     for (int d = 0; d < 3; d++) way[d] = share * (x[d] - y[d]);
-    for (int sweep = 0; sweep < SWEEPS; sweep++)
+    double most = far;
+    for (int sweep = 0; sweep < SWEEPS && most > ROUND_OFF * far; sweep++) {
+      most = 0.0;
       for (auto &plane : planes) {
         const double more = std::max(plane.height + MathExtra::dot3(plane.n, way), -plane.push);
+        most = std::max(most, fabs(more));
         plane.push += more;
         for (int d = 0; d < 3; d++) way[d] -= more * plane.n[d];
       }
+    }
     const double before = change;
     change = MathExtra::len3(way);
     if (round > 0 && change > 0.7 * before) share *= 0.5;
