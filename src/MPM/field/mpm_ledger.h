@@ -118,7 +118,6 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   // one, and [other][6] their places and velocities before points move
   std::vector<int> others;
   std::vector<double> starts;
-  bool any_others = false;      // on any rank, where there is a common acceleration
   double spent_before = 0.0;    // spent() before node actions
   // acceleration that nearly all points have in common in this step, by the forces on them, and
   // before points move the sum of their masses times the place along it, and of their momenta
