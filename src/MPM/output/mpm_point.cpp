@@ -284,8 +284,8 @@ void MPMPoint::run_path(MaterialPoint &point)
 }
 
 /** States behind shocks of growing strength: each is reached from the initial state by a smooth
- *  compression with the heat that is missing in the jump condition of energy (Rankine, Hugoniot), as
- *  the laws see the temperature at the start of a step. Viscous stress is gone a moment later. */
+ *  compression with the heat that is missing in the jump condition of energy (Rankine, Hugoniot),
+ *  as laws see the temperature of the start of a step. Viscous stress is gone a moment later. */
 void MPMPoint::run_shock(MaterialPoint &initial)
 {
   constexpr int PARTS = 500, MOST = 50;
