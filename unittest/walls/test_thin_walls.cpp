@@ -8,6 +8,7 @@
 // Regions as walls where their other faces are near: thin plates, narrow and short tools; the
 // warning where nodes cannot tell the shape; unions, intersections, and cones; walls that move.
 
+#include "math_extra.h"
 #include "mpm_lammps.h"
 
 #include "walls/mpm_region_surface.h"
@@ -464,12 +465,13 @@ void each_place(const std::string &regions,
   }
 }
 
-/** Its signed distances there, with far = 100. */
+/** Its signed distances there, as far as this. */
 void each_distance(const std::string &regions,
-                   const std::function<void(const double *x, double distance)> &f)
+                   const std::function<void(const double *x, double distance)> &f,
+                   double far = 1.0e6)
 {
   each_place(regions, [&](const MPMRegionSurface &surface, const double *x) {
-    f(x, surface.distance(x, 100.0));
+    f(x, surface.distance(x, far));
   });
 }
 
@@ -593,16 +595,6 @@ TEST(Surfaces, EdgesBetweenParts)
         for (int k = 0; k < 3; k++) square += std::pow(std::min(x[k], 0.0), 2);
         if (square > 0.0) EXPECT_NEAR(d, std::sqrt(square), 1.0e-6);
       });
-  for (const std::string ends : {"-0.5 0.5", "-1 1", "INF INF"})
-    each_distance("region a block -3 3 -3 3 -0.5 0.5\nregion b cylinder z 0 0 0.7 " + ends +
-                      " side out\nregion it intersect 2 a b\n",
-                  [&](const double *x, double d) {    // the rim of a hole
-                    const double out = std::fabs(x[2]) - 0.5, in = 0.7 - std::hypot(x[0], x[1]);
-                    if (out > 0.4 || in > 0.69) return;    // outside of the cylinder, on the axis
-                    if (out > 0.0 || in > 0.0)
-                      EXPECT_NEAR(d, std::hypot(std::max(out, 0.0), std::max(in, 0.0)), 1.0e-6)
-                          << ends << " " << x[0] << " " << x[1] << " " << x[2];
-                  });
   // what is nearer than the limit is found, and nothing else
   Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") +
             "region a plane 0 0 0 -1 0 -1\nregion b plane 0 0 0 1 0 -1\n"
@@ -617,6 +609,104 @@ TEST(Surfaces, EdgesBetweenParts)
   ridge.normal(x, far, 1.0e-5, n);
   EXPECT_NEAR(n[0], 0.1 / exact, 1.0e-6);
   EXPECT_NEAR(n[2], 0.5 / exact, 1.0e-6);
+}
+
+// Round, rectangular, and blind holes in a plate, which are longer than it is thick or end with it,
+// in both orders of their parts: the rim is found wherever it is within reach, also from the axis,
+// and there is no lid where it is not
+TEST(Surfaces, RimsOfHoles)
+{
+  constexpr double UP = 0.5, DEEP = -0.3;
+  struct Hole {
+    std::string shape;
+    double bottom;    // of the hole
+    bool round;
+  };
+  const Hole holes[] = {{"cylinder z 0 0 0.7 -0.5 0.5", -9.0, true},
+                        {"cylinder z 0 0 0.7 -1 1", -9.0, true},
+                        {"cylinder z 0 0 0.7 INF INF", -9.0, true},
+                        {"cylinder z 0 0 0.7 -0.3 0.5", DEEP, true},
+                        {"block -0.7 0.7 -3 3 -0.5 0.5", -9.0, false},
+                        {"block -0.7 0.7 -3 3 -1 1", -9.0, false},
+                        {"block -0.7 0.7 INF INF INF INF", -9.0, false},
+                        {"block -0.7 0.7 -3 3 -0.3 0.5", DEEP, false}};
+  for (const auto &hole : holes)
+    for (const std::string order : {"a b", "b a"})
+      for (const double far : {1.0e6, 0.5})    // walls have a far of 1e8 spacings
+        each_distance(
+            "region a block -3 3 -3 3 -0.5 0.5\nregion b " + hole.shape +
+                " side out\nregion it intersect 2 " + order + "\n",
+            [&](const double *x, double d) {
+              const double across = hole.round ? std::hypot(x[0], x[1]) : std::fabs(x[0]);
+              const double in = 0.7 - across, high = x[2] - UP, low = -UP - x[2];
+              if (in <= 0.0) return;
+              double exact = std::hypot(in, std::max({high, low, 0.0}));
+              if (hole.bottom > -UP) {
+                if (x[2] <= hole.bottom) return;
+                exact = std::min(exact, x[2] - hole.bottom);
+              }
+              EXPECT_NEAR(d, std::min(exact, far), 1.0e-6)
+                  << hole.shape << " " << order << " " << x[0] << " " << x[1] << " " << x[2] << " "
+                  << far;
+            },
+            far);
+}
+
+// Intersections and unions of two to four random regions, many of which are not convex: no place of
+// a fine lattice in the set is nearer than its distance, and that of the place is in all parts
+TEST(Surfaces, OfRandomRegions)
+{
+  constexpr double SPACING = 0.125;
+  int tried = 0, too_near = 0, seed = 0;
+  const auto draw = [&seed] {
+    return std::remainder(0.61803398875 * ++seed + 0.31 * std::sin(seed), 1.0) * 2.0;
+  };
+  for (int scene = 0; scene < 60; scene++) {
+    const int n = 2 + scene % 3;
+    const bool joined = scene % 4 == 3;
+    const double side = joined ? -1.0 : 1.0;
+    std::string text, names;
+    for (int k = 0; k < n; k++) {
+      const double a = 0.6 * draw(), b = 0.6 * draw(), c = 0.6 * draw();
+      const double r = 0.6 + 0.4 * std::fabs(draw());
+      const std::string kinds[] = {
+          strprintf("block %g %g %g %g %g %g", a - r, a + r, b - r, b + r, c - r, c + r),
+          strprintf("sphere %g %g %g %g", a, b, c, r),
+          strprintf("cylinder z %g %g %g %g %g", a, b, r, c - r, c + r),
+          strprintf("cylinder x %g %g %g INF INF", a, b, r),
+          strprintf("plane %g %g %g %g %g %g", 0.3 * a, 0.3 * b, 0.3 * c, draw(), draw(), draw())};
+      text += strprintf("region r%d ", k) + kinds[(int) (2.5 + 2.49 * draw())] +
+          (k > 0 && draw() > 0.0 ? " side out\n" : "\n");
+      names += strprintf(" r%d", k);
+    }
+    text += std::string("region it ") + (joined ? "union " : "intersect ") + std::to_string(n) +
+        names + "\n";
+    SCOPED_TRACE(text);
+    std::vector<std::array<double, 3>> places;
+    std::vector<std::unique_ptr<MPMRegionSurface>> parts;
+    each_place(text, [&](const MPMRegionSurface &it, const double *at) {
+      if (++tried % 100) return;
+      const double x[3] = {0.75 * at[0], 0.75 * at[1], 0.75 * at[2]};
+      if (places.empty()) {
+        std::array<double, 3> y;
+        for (y[0] = -2.5; y[0] < 2.5; y[0] += SPACING)
+          for (y[1] = -2.5; y[1] < 2.5; y[1] += SPACING)
+            for (y[2] = -2.5; y[2] < 2.5; y[2] += SPACING)
+              if (it.has(y.data()) != joined) places.push_back(y);
+      }
+      if (it.has(x) != joined) return;
+      double least = 2.25;
+      for (const auto &y : places) least = std::min(least, MathExtra::distsq3(x, y.data()));
+      const double d = std::fabs(it.distance(x, 1.0e6));
+      if (least < 2.25)
+        EXPECT_LT(d, std::sqrt(least) + 1.0e-9) << x[0] << " " << x[1] << " " << x[2];
+      double n[3], y[3];
+      it.normal(x, 1.0e6, 1.0e-6, n);
+      for (int c = 0; c < 3; c++) y[c] = x[c] - side * d * n[c];
+      if (d < 1.5 && side * it.distance(y, 1.0e6) > 1.0e-3) too_near++;
+    });
+  }
+  EXPECT_LT(measured("share too near", too_near / (tried / 100.0)), 0.01);
 }
 
 TEST(Surfaces, OfSharpCones)

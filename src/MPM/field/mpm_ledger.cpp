@@ -116,7 +116,7 @@ bool MPMLedger::finds_common_acceleration(const NodeSums &sums)
   static constexpr double FEW = 0.25;                // most of the points with other forces
   const bigint step = update->ntimestep;
   if (step < FIRST || step % OFTEN == 0 || at_points || !field.time_limit->bound ||
-      !field.elements.empty() || !field.stretching.empty() || !field.plan->added_stresses.empty())
+      !field.elements.empty() || !field.stretching.empty())
     return false;
   // of this rank, and its negative
   constexpr int N = 6;
@@ -178,10 +178,11 @@ void MPMLedger::account_for_forces(const NodeSums &sums)
   at_points = false;
   if (common) {
     const TransferStep s = field.step_data();
-    const double unit = force->mvv2e * s.dt * s.force_scale;
-    work_at_nodes = unit * (dot(acceleration, sums.momentum) + power_of_others());
-    internal += work_at_nodes + (spent() - spent_before) - (sums.energy - sums.old_energy);
-    external += work_at_nodes;
+    const double unit = force->mvv2e * s.dt;
+    const OtherPowers power = powers_of_others();
+    work_at_nodes = unit * s.force_scale * (dot(acceleration, sums.momentum) + power.forces);
+    external += work_at_nodes + unit * s.stress_scale * power.loads;
+    internal += (spent() - spent_before) - (sums.energy - sums.old_energy);
     if (is_accelerated()) before_motion = sums_along_acceleration();
   } else {
     account_at_points();
@@ -272,12 +273,9 @@ void MPMLedger::account_at_points()
     if (pressure) subtract_pressure(pressure, b, first, n, total_stress);
     stress += stress_power(b, first, n, L);
     if (!has_added_stress(field, first, first + n)) return;
-    std::fill_n(total_stress, 6 * n, 0.0);
-    add_stress(field, first, n, total_stress);
     b = rows_from(field, r, first);
     b.velocity = velocity;
-    b.tau = total_stress;
-    loads += stress_power(b, first, n, L);
+    loads += added_stress_power(b, first, n, L);
   };
   points_from_step(field, account, true);
 
@@ -306,34 +304,51 @@ void MPMLedger::find_other_force(const PointRows &r, int i, double f[3]) const
   for (int d = 0; d < 3; d++) f[d] -= r.mass[i] * acceleration[d];
 }
 
-/** Power at the nodes of the forces on others beyond the common acceleration. */
-double MPMLedger::power_of_others()
+/** What n points from first on lose to the nodes by the stress that is put on them from outside.
+ *  rows: as in stress_power(); b.tau changes. */
+double MPMLedger::added_stress_power(PointRows &b, int first, int n, const double *L) const
 {
-  if (others.empty()) return 0.0;
+  double stress[6 * BATCH + 8];
+  std::fill_n(stress, 6 * n, 0.0);
+  add_stress(field, first, n, stress);
+  b.tau = stress;
+  return stress_power(b, first, n, L);
+}
+
+/** Powers at the nodes, by the mean of the old and the final velocity. Only batches with such
+ *  points ask the nodes. */
+MPMLedger::OtherPowers MPMLedger::powers_of_others()
+{
+  OtherPowers power;
+  const bool loads = !field.plan->added_stresses.empty();
+  if (others.empty() && !loads) return power;
   field.nodes.complete_velocities();
   const PointRows r = field.rows();
   const TransferStep s = field.step_data();
-  double power = 0.0, f[3], L[9 * BATCH], velocity[3 * BATCH] = {};
+  double f[3], L[9 * BATCH], velocity[3 * BATCH] = {};
   MPMPointMap &map = *field.map;
-  const auto next = [&](int i) {
-    return std::lower_bound(others.begin(), others.end(), i);
-  };
   for (const auto &a : map.active) {
     bool loaded = false;
     int base[3];
     for (int k = a.first_run; k < a.last_run; k++) {
       const auto &run = map.runs[k];
-      for (auto other = next(run.first); other != others.end() && *other < run.last;) {
+      auto other = std::lower_bound(others.begin(), others.end(), run.first);
+      const bool run_is_stressed = loads && has_added_stress(field, run.first, run.last);
+      for (int first = run.first; first < run.last; first += BATCH) {
+        const int last = std::min(first + BATCH, run.last), n = last - first;
+        const bool is_stressed = run_is_stressed && has_added_stress(field, first, last);
+        const bool is_pushed = other != others.end() && *other < last;
+        if (!is_stressed && !is_pushed) continue;
         if (!loaded) map.load_tile(a, base, true);
         loaded = true;
-        const int first = *other, n = std::min(BATCH, run.last - first);
         PointRows b = rows_from(field, r, first);
         b.velocity = velocity;
         field.kernel.g2p_gradient(b, s, 0, n, base, map.tile_load, L);
-        for (; other != others.end() && *other < first + n; ++other) {
+        for (; other != others.end() && *other < last; ++other) {
           find_other_force(r, *other, f);
-          power += dot(f, velocity + 3 * (*other - first));
+          power.forces += dot(f, velocity + 3 * (*other - first));
         }
+        if (is_stressed) power.loads -= added_stress_power(b, first, n, L);
       }
     }
   }

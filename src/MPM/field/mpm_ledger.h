@@ -142,7 +142,12 @@ class MPMLedger : protected Pointers, public MPMEnergies {
   void account_at_points();
   void note_starts();
   void find_other_force(const MPM_NS::PointRows &, int i, double f[3]) const;
-  double power_of_others();
+  /** Of forces on others beyond the common acceleration, and of loads given as a stress. */
+  struct OtherPowers {
+    double forces = 0.0, loads = 0.0;
+  };
+  OtherPowers powers_of_others();
+  double added_stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;
   double work_on_points(double &late) const;
   double stress_power(MPM_NS::PointRows &, int first, int n, const double *L) const;
 };

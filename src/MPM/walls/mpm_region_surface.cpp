@@ -14,7 +14,8 @@
  *  with those of its places that are not hidden by others. Where all are hidden, an edge between
  *  parts is the nearest surface.
  *
- *  On the axis of cones zero is divided by zero: a place next to it is taken. From outside, an end
+ *  On the axis of cones zero is divided by zero, and on that of cylinders the side is not found: a
+ *  place next to it is taken. From outside, an end
  *  with a radius of zero gives not-a-number: it is declared open, as its point belongs to the
  *  side. */
 
@@ -22,6 +23,7 @@
 
 #include "math_extra.h"
 #include "region.h"
+#include "walls/mpm_region_edge.h"
 #include "walls/region_mpm_mesh.h"
 
 #include <algorithm>
@@ -32,7 +34,9 @@ using namespace LAMMPS_NS;
 
 MPMRegionSurface::MPMRegionSurface(Region *region, int dim) :
     region(region), mesh(dynamic_cast<RegMPMMesh *>(region)), dim(dim),
-    is_cone(strcmp(region->style, "cone") == 0), is_union(strcmp(region->style, "union") == 0)
+    is_cone(strcmp(region->style, "cone") == 0),
+    has_axis(is_cone || strcmp(region->style, "cylinder") == 0),
+    is_union(strcmp(region->style, "union") == 0)
 {
   if (mesh) mesh->need_distance();
   if (is_union || strcmp(region->style, "intersect") == 0)
@@ -48,9 +52,40 @@ bool MPMRegionSurface::is_open() const
          });
 }
 
+double MPMRegionSurface::size_of(const double *x)
+{
+  return fabs(x[0]) + fabs(x[1]) + fabs(x[2]);
+}
+
+double MPMRegionSurface::scale_at(const double *x, double distance)
+{
+  constexpr double ROUND_OFF = 1.0e-7;
+  return std::max(distance, ROUND_OFF * size_of(x));
+}
+
+bool MPMRegionSurface::is_convex(bool inside) const
+{
+  static const char *const CONVEX[] = {"block", "cone",  "cylinder", "ellipsoid",
+                                       "plane", "prism", "sphere"};
+  return (region->interior != 0) == inside &&
+      std::any_of(std::begin(CONVEX), std::end(CONVEX), [&](const char *style) {
+           return strcmp(region->style, style) == 0;
+         });
+}
+
+/** Parts count their surfaces, so that an intersection has all places where two of them only touch,
+ *  as where a hole ends with its plate. It is as all around such a place. */
 bool MPMRegionSurface::match(const double *x) const
 {
-  return region->match(x[0], x[1], x[2]);
+  const bool here = region->match(x[0], x[1], x[2]);
+  if (parts.empty()) return here;
+  const double off = 1.0e-11 * size_of(x);
+  for (int k = 0; k < (1 << dim); k++) {
+    double y[3] = {x[0], x[1], x[2]};
+    for (int d = 0; d < dim; d++) y[d] += ((k >> d & 1) ? off : -off) * (1.0 + 0.3 * d);
+    if (region->match(y[0], y[1], y[2]) == here) return here;
+  }
+  return !here;
 }
 
 /** An end is sharp when LAMMPS does not find it alone. When radii are variables, there can be one
@@ -93,9 +128,9 @@ void MPMRegionSurface::each_contact(const double *x, double far, bool inside, co
   };
   const int interior = region->interior;
   if (!inside) region->interior = !interior;
-  if (is_cone) {
-    const double off = 1.0e-12 * (fabs(x[0]) + fabs(x[1]) + fabs(x[2])) + 1.0e-20 * far;
-    const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
+  const double off = 1.0e-12 * size_of(x) + 1.0e-20 * far;
+  const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
+  if (has_axis) {
     for (const int end : left_out) {
       const bool leave_out = end >= 0 && !region->interior;
       if (leave_out) region->open_faces[end] = 1;
@@ -104,10 +139,7 @@ void MPMRegionSurface::each_contact(const double *x, double far, bool inside, co
       if (!leave_out) break;
     }
   } else if (!each(x) && region->interior) {
-    // centers and axes have no nearest place
-    const double off = 1.0e-9 * far;
-    const double next[3] = {x[0] + off, x[1] + off, x[2] + off};
-    each(next);
+    each(next);    // centers have no nearest place
   }
   region->interior = interior;
 }
@@ -168,131 +200,46 @@ void MPMRegionSurface::find_places(const double *x, double far) const
 
 void MPMRegionSurface::find_places_of_parts(const double *x, double far) const
 {
-  const bool in_body = match(x) == (region->interior != 0);
+  constexpr double SAME = 1.0e-9;
+  const bool in_body = match(x) == (region->interior != 0), with_edges = in_body == is_union;
+  double least = 0.0, nearest = far;    // no place is nearer than that of any part
   for (const auto &part : parts) {
     // of a union inside of it, and of an intersection outside: parts whose side this is
-    if (in_body == is_union && part.match(x) != in_body) continue;
+    if (with_edges && part.match(x) != in_body) continue;
     part.find_places(x, far);
-    for (const auto &place : part.places) {
+    double of_part = far;
+    for (const auto &place : std::vector<Place>(part.places)) {
+      of_part = std::min(of_part, place.distance);
       const bool hidden = std::any_of(parts.begin(), parts.end(), [&](const auto &other) {
         return &other != &part &&
-            (other.match(place.x) == is_union || (!is_union && other.faces(place, x, far)));
+            (other.match(place.x) == is_union || (!is_union && other.faces(part, place, far)));
       });
-      if (!hidden) places.push_back(place);
+      if (hidden) continue;
+      places.push_back(place);
+      nearest = std::min(nearest, place.distance);
     }
+    least = std::max(least, of_part);
   }
-  if (places.empty() && in_body == is_union) find_edge(x, far);
+  if (!with_edges || least >= far || nearest <= (1.0 + SAME) * least) return;
+  Place edge;
+  const auto answer = MPMRegionEdge(*this, x, far, least).find(nearest, edge);
+  if (answer == MPMRegionEdge::Answer::FOUND)
+    places.push_back(edge);
+  else if (answer == MPMRegionEdge::Answer::UNKNOWN && nearest >= far)
+    places.push_back({{x[0], x[1], x[2]}, least});    // rather too near than too far
 }
 
-/** Is a place, seen from x, on the surface of this region, which faces the other way there, so that
- *  there is nothing between both? */
-bool MPMRegionSurface::faces(const Place &place, const double *x, double far) const
+/** Does this region end at a place of a part, on the other side of it? There is nothing between
+ *  both. */
+bool MPMRegionSurface::faces(const MPMRegionSurface &part, const Place &place, double far) const
 {
-  constexpr double SAME = 1.0e-9, STEP = 1.0e-5;    // of far
-  if (!(fabs(find(place.x, SAME * far, false)) < SAME * far)) return false;
-  double n[3], d[3];
-  normal(place.x, far, STEP * far, n);
-  MathExtra::sub3(x, place.x, d);
-  return MathExtra::dot3(n, d) < -0.99 * place.distance;
-}
-
-/** The surface of a part near y as a plane: its normal, outward for side = 1, and the height of y
- *  above it. Where it faces the plane of another part, as the end of a cylinder that is a hole in a
- *  plate, the place is taken that is next to nearest. Returns false where there is none. */
-bool MPMRegionSurface::find_plane(const double *y, double far, double side,
-                                  const std::vector<Plane> &others, Plane &plane) const
-{
-  constexpr double STEP = 1.0e-5;    // of far
-  const auto facing = [&](const double *n) {
-    return std::find_if(others.begin(), others.end(), [n](const Plane &other) {
-      return MathExtra::dot3(n, other.n) < -0.99;
-    });
-  };
-  plane.push = 0.0;
-  plane.height = side * find(y, far, false);
-  normal(y, far, STEP * far, plane.n);
-  MathExtra::scale3(side, plane.n);
-  const auto other = facing(plane.n);
-  if (other == others.end()) return fabs(plane.height) < far;
-  double behind[3], nearest = far;
-  for (int d = 0; d < 3; d++) behind[d] = y[d] - (STEP * far + other->height) * other->n[d];
-  const double outward = match(behind) ? -side : side;
-  find_places(behind, far);
-  for (const auto &place : places) {
-    double n[3];
-    MathExtra::sub3(behind, place.x, n);
-    if (!(place.distance < nearest && place.distance > 0.0)) continue;
-    MathExtra::scale3(outward / place.distance, n);
-    if (facing(n) != others.end()) continue;
-    nearest = place.distance;
-    MathExtra::copy3(n, plane.n);
-    plane.height = outward * place.distance;
-    for (int d = 0; d < 3; d++) plane.height += n[d] * (y[d] - behind[d]);
-  }
-  return nearest < far;
-}
-
-/** The place that is nearest to x of those that lie on the far side of all parts, or on their
- *  surfaces: by steps toward x, from which all surfaces, as planes, send back to the nearest place
- *  that they allow (dual variables are found one by one: C. Hildreth, Nav. Res. Logist. Q. 4 (1957)
- *  79). Steps become shorter where an edge bends so that they overshoot. Where parts face each
- *  other, what is found depends on their order, and the last one has a choice. If this does not
- *  converge, the largest distance from a part, which is less. */
-void MPMRegionSurface::find_edge(const double *x, double far) const
-{
-  const double side = is_union ? -1.0 : 1.0;
-  double least = 0.0;
-  for (const auto &part : parts) least = std::max(least, side * part.find(x, far, false));
-  if (least >= far) return;
-  for (const bool backward : {false, true}) {
-    double y[3];
-    if (!find_edge_in_order(x, far, side, backward, y)) continue;
-    const double distance = sqrt(MathExtra::distsq3(x, y));
-    if (distance < far) places.push_back({{y[0], y[1], y[2]}, distance});
-    return;
-  }
-  places.push_back({{x[0], x[1], x[2]}, least});
-}
-
-bool MPMRegionSurface::find_edge_in_order(const double *x, double far, double side, bool backward,
-                                          double *y) const
-{
-  constexpr int ROUNDS = 100, SWEEPS = 200;
-  constexpr double CONVERGED = 1.0e-9, ROUND_OFF = 1.0e-14;    // of far
-  const int n = (int) parts.size();
-  double change = far, share = 1.0;
-  std::copy_n(x, 3, y);
-  for (int round = 0; round < ROUNDS; round++) {
-    std::vector<Plane> planes;
-    double out = 0.0;
-    for (int k = 0; k < n; k++) {
-      Plane plane;
-      const auto &part = parts[backward ? n - 1 - k : k];
-      if (part.find_plane(y, far, side, planes, plane)) {
-        planes.push_back(plane);
-        out = std::max(out, plane.height);
-      } else if (plane.height > -far)
-        return false;
-    }
-    if (change <= CONVERGED * far && out <= CONVERGED * far) return true;
-    double way[3];
-    for (int d = 0; d < 3; d++) way[d] = share * (x[d] - y[d]);
-    double most = far;
-    for (int sweep = 0; sweep < SWEEPS && most > ROUND_OFF * far; sweep++) {
-      most = 0.0;
-      for (auto &plane : planes) {
-        const double more = std::max(plane.height + MathExtra::dot3(plane.n, way), -plane.push);
-        most = std::max(most, fabs(more));
-        plane.push += more;
-        for (int d = 0; d < 3; d++) way[d] -= more * plane.n[d];
-      }
-    }
-    const double before = change;
-    change = MathExtra::len3(way);
-    if (round > 0 && change > 0.7 * before) share *= 0.5;
-    MathExtra::add3(y, way, y);
-  }
-  return false;
+  constexpr double SAME = 1.0e-7, STEP = 1.0e-5;
+  const double scale = scale_at(place.x, place.distance);
+  if (!(fabs(find(place.x, SAME * scale, false)) < SAME * scale)) return false;
+  double n[3], of_part[3];
+  normal(place.x, far, STEP * scale, n);
+  part.normal(place.x, far, STEP * scale, of_part);
+  return MathExtra::dot3(n, of_part) < -0.99;
 }
 
 /** The direction to the nearest place on the surface is the gradient, unless x is on the surface,

@@ -24,6 +24,8 @@ class Region;
 
 /** The surface of a region in its present state: signed distances and normals. */
 class MPMRegionSurface {
+  friend class MPMRegionEdge;    // asks parts
+
  public:
   /** The region must have been initialized for the run. */
   MPMRegionSurface(Region *, int dim);
@@ -55,18 +57,23 @@ class MPMRegionSurface {
   };
 
   struct Plane {
-    double n[3], height, push;    // push: multiplier of its constraint
+    double n[3], height;    // outward normal, height of a place above it
   };
 
   Region *region;
   RegMPMMesh *mesh;
   int dim;
-  bool is_cone, is_union;
+  bool is_cone, has_axis, is_union;
   MPM_NS::SurfaceCells *cells = nullptr;    // of the mesh, if they are in use
   std::vector<int> left_out;    // ends of a cone that are left out, one after the other; -1: none
   std::vector<MPMRegionSurface> parts;    // of unions and intersections
   mutable std::vector<Place> places;
 
+  static double size_of(const double *x);    // for round-off
+  /** Length that steps near x are made of: a distance, unless it is close to round-off. */
+  static double scale_at(const double *x, double distance);
+  /** Is the region a convex body, or the outside of one? */
+  bool is_convex(bool inside) const;
   bool match(const double *x) const;
   double find(const double *x, double far, bool in_cells) const;
   bool find_in_cells(const double *x, double far, double &distance, double *gradient) const;
@@ -74,11 +81,7 @@ class MPMRegionSurface {
   void find_sharp_end();
   void find_places(const double *x, double far) const;
   void find_places_of_parts(const double *x, double far) const;
-  bool faces(const Place &, const double *x, double far) const;
-  bool find_plane(const double *y, double far, double side, const std::vector<Plane> &others,
-                  Plane &plane) const;
-  void find_edge(const double *x, double far) const;
-  bool find_edge_in_order(const double *x, double far, double side, bool backward, double *y) const;
+  bool faces(const MPMRegionSurface &part, const Place &, double far) const;
   template <class F> void each_contact(const double *x, double far, bool inside, const F &f) const;
 };
 

@@ -1,0 +1,329 @@
+/* ----------------------------------------------------------------------
+   LAMMPS - Large-scale Atomic/Molecular Massively Parallel Simulator
+   https://www.lammps.org/
+
+   This file is part of the MPM package, distributed under the terms of the
+   GNU General Public License, version 2, like LAMMPS itself.
+------------------------------------------------------------------------- */
+
+#include "walls/mpm_region_edge.h"
+
+#include "math_const.h"
+#include "math_extra.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+
+using namespace LAMMPS_NS;
+
+static constexpr double STEP = 1.0e-5;    // of a distance
+
+MPMRegionEdge::MPMRegionEdge(const MPMRegionSurface &surface, const double *x, double far,
+                             double least) :
+    x(x),
+    dim(surface.dim), far(far), side(surface.is_union ? -1.0 : 1.0),
+    step(STEP * MPMRegionSurface::scale_at(x, least))
+{
+  for (const auto &part : surface.parts) order.push_back(&part);
+  const auto last = std::stable_partition(order.begin(), order.end(), [&](const auto *part) {
+    return part->is_convex(!surface.is_union);
+  });
+  convex = (int) (last - order.begin());
+}
+
+MPMRegionEdge::Answer MPMRegionEdge::find(double limit, Place &place)
+{
+  constexpr double WIDER = 8.0;    // than a distance that is too short
+  nearest = limit;
+  const double more = bound(x);
+  if (more >= limit) return Answer::NONE;
+  step = std::max(step, STEP * more);
+  const bool found = search_from(x);
+  bool complete = found && convex == (int) order.size();
+  double inner = 0.0, outer = WIDER / STEP * step;
+  for (int budget = 1000; !complete && budget > 0; outer *= WIDER) {
+    outer = std::min(outer, nearest);
+    if (!search_cells(inner, outer, budget)) break;
+    complete = outer >= std::min(nearest, far);
+    inner = outer;
+  }
+  if (nearest < limit) {
+    place = edge;
+    return Answer::FOUND;
+  }
+  return complete ? Answer::NONE : Answer::UNKNOWN;
+}
+
+MPMRegionEdge::View MPMRegionEdge::view_from(const double *place) const
+{
+  constexpr double OFF = 0.1;    // so that the place is in no plane across
+  View view = {{place[0], place[1], place[2]}, {}};
+  for (int d = 0; d < dim; d++) view.from[d] += OFF * step * (d + 1);
+  return view;
+}
+
+/** Is the surface of a part flat, with this normal at this place? At its edges it need go on in some
+ *  directions only, that are not opposite. */
+bool MPMRegionEdge::is_flat(const MPMRegionSurface &part, const double *from, const Place &place,
+                            const double *n) const
+{
+  constexpr int DIRECTIONS = 8;
+  double off = std::max(1.0e3 * step, 1.0e-5 * MPMRegionSurface::size_of(x));
+  for (const auto &other : part.places)
+    if (other.distance > 10.0 * place.distance) off = std::min(off, 0.01 * other.distance);
+  const double same = 1.0e-6 * off;
+  double across[3] = {0.0, 0.0, 0.0}, along[3];
+  if (dim == 2) {
+    across[2] = 1.0;
+  } else {
+    const double axis[3] = {fabs(n[0]) < 0.6 ? 1.0 : 0.0, fabs(n[0]) < 0.6 ? 0.0 : 1.0, 0.0};
+    MathExtra::cross3(n, axis, across);
+    MathExtra::norm3(across);
+  }
+  MathExtra::cross3(n, across, along);
+  const auto goes_on = [&](double angle) {
+    double beside[3];
+    for (int d = 0; d < 3; d++)
+      beside[d] = from[d] + off * (cos(angle) * along[d] + (dim - 2) * sin(angle) * across[d]);
+    part.find_places(beside, far);
+    return std::any_of(part.places.begin(), part.places.end(), [&](const auto &other) {
+      double way[3];
+      MathExtra::sub3(other.x, place.x, way);
+      return fabs(MathExtra::dot3(way, n)) < same && MathExtra::len3(way) < 2.0 * off;
+    });
+  };
+  int first = -1;
+  for (int k = 0; k < DIRECTIONS; k += dim == 2 ? DIRECTIONS / 2 : 1) {
+    if (!goes_on(2.0 * MathConst::MY_PI * k / DIRECTIONS)) continue;
+    if (dim == 2 || (first >= 0 && k - first != DIRECTIONS / 2)) return true;
+    if (first < 0) first = k;
+  }
+  return false;
+}
+
+/** The surface of a part as a plane at the place that is nearest to y of those that are seen, and
+ *  the distance of what is seen, far if it is nothing, negative in the part. A flat end that faces
+ *  a plane of the view, with nothing between them, does not count, as that of a cylinder that is a
+ *  hole in a plate: what is next to nearest does. */
+bool MPMRegionEdge::find_plane(const MPMRegionSurface &part, const View &view, const double *y,
+                               Plane &plane, double &distance) const
+{
+  const double outward = part.match(view.from) ? -side : side;
+  double nearest_to_y = far;
+  part.find_places(view.from, far);
+  distance = far;
+  const auto places = part.places;
+  for (const auto &place : places) {
+    double n[3];
+    MathExtra::sub3(view.from, place.x, n);
+    const double length = MathExtra::len3(n);
+    if (!(length > 0.99 * place.distance && length > 0.0)) continue;
+    MathExtra::scale3(outward / length, n);
+    double height = outward * place.distance;
+    for (int d = 0; d < 3; d++) height += n[d] * (y[d] - view.from[d]);
+    const auto faces = [&](const Plane &other) {
+      return MathExtra::dot3(n, other.n) < -1.0 + 1.0e-6 && height + other.height > -step;
+    };
+    if (std::any_of(view.planes.begin(), view.planes.end(), faces) &&
+        is_flat(part, view.from, place, n))
+      continue;
+    distance = std::min(distance, place.distance);
+    const double way = sqrt(MathExtra::distsq3(y, place.x));
+    if (way >= nearest_to_y) continue;
+    nearest_to_y = way;
+    MathExtra::copy3(n, plane.n);
+    plane.height = height;
+  }
+  distance *= outward;
+  return nearest_to_y < far;
+}
+
+/** The same of a convex part, seen from inside, where all surfaces that meet at an edge of its own
+ *  are seen: all of them are planes that the part is behind. */
+void MPMRegionEdge::find_planes(const MPMRegionSurface &part, const double *from, const double *y,
+                                std::vector<Plane> &planes) const
+{
+  part.find_places(from, far);
+  for (const auto &place : part.places) {
+    Plane plane;
+    MathExtra::sub3(place.x, from, plane.n);
+    const double length = MathExtra::len3(plane.n);
+    if (!(length > 0.99 * place.distance && length > 0.0)) continue;
+    MathExtra::scale3(1.0 / length, plane.n);
+    plane.height = -place.distance;
+    for (int d = 0; d < 3; d++) plane.height += plane.n[d] * (y[d] - from[d]);
+    planes.push_back(plane);
+  }
+}
+
+void MPMRegionEdge::go_behind(const double *y, const Plane &plane, View &view) const
+{
+  double height = plane.height + step;
+  for (int d = 0; d < 3; d++) height += plane.n[d] * (view.from[d] - y[d]);
+  if (height > 0.0)
+    for (int d = 0; d < 3; d++) view.from[d] -= height * plane.n[d];
+  view.planes.push_back(plane);
+}
+
+/** Way from y to the place nearest to y + to that is behind all planes, in no more than three of
+ *  which it lies: all choices of these are tried. Returns false where there is none. */
+bool MPMRegionEdge::nearest_behind(std::vector<Plane> &planes, const double *to, double *way) const
+{
+  double out = 0.0;
+  for (const auto &plane : planes) out = std::max(out, plane.height);
+  const double tolerance = 1.0e-9 * (MathExtra::len3(to) + step);
+  const double reach = 2.0 * (MathExtra::len3(to) + out) + step;
+  planes.erase(std::remove_if(planes.begin(), planes.end(),
+                              [reach](const Plane &plane) {
+                                return plane.height < -reach;
+                              }),
+               planes.end());
+  const int n = (int) planes.size();
+  double least = -1.0;
+  const auto attempt = [&](const int *chosen, int m) {
+    // multipliers of the planes: of n_k . n_l, by Cramer's rule
+    double A[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, b[3] = {}, push[3];
+    for (int k = 0; k < m; k++) {
+      for (int l = 0; l < m; l++)
+        A[k][l] = MathExtra::dot3(planes[chosen[k]].n, planes[chosen[l]].n);
+      b[k] = planes[chosen[k]].height + MathExtra::dot3(planes[chosen[k]].n, to);
+    }
+    const double determinant = MathExtra::det3(A);
+    if (!(determinant > 1.0e-12)) return;
+    double end[3] = {to[0], to[1], to[2]};
+    for (int k = 0; k < m; k++) {
+      double with_b[3][3];
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) with_b[i][j] = j == k ? b[i] : A[i][j];
+      push[k] = MathExtra::det3(with_b) / determinant;
+      if (push[k] < 0.0) return;
+      for (int d = 0; d < 3; d++) end[d] -= push[k] * planes[chosen[k]].n[d];
+    }
+    for (const auto &plane : planes)
+      if (plane.height + MathExtra::dot3(plane.n, end) > tolerance) return;
+    const double moved = MathExtra::distsq3(end, to);
+    if (least >= 0.0 && moved >= least) return;
+    least = moved;
+    MathExtra::copy3(end, way);
+  };
+  attempt(nullptr, 0);
+  for (int k = 0; k < n && least < 0.0; k++) {
+    attempt(&k, 1);
+    for (int l = 0; l < k; l++) {
+      const int two[] = {k, l};
+      attempt(two, 2);
+      for (int i = 0; i < l; i++) {
+        const int three[] = {k, l, i};
+        attempt(three, 3);
+      }
+    }
+  }
+  return least >= 0.0;
+}
+
+/** Local search. Is what it finds an edge, and nearer than the nearest one so far? */
+bool MPMRegionEdge::search_from(const double *start)
+{
+  constexpr int ROUNDS = 30;
+  const double converged = 1.0e-3 * step;
+  double y[3] = {start[0], start[1], start[2]};
+  double change = far, share = 1.0, before[3] = {};
+  for (int round = 0;; round++) {
+    // from a little toward x, where the parts are seen as from x
+    double q[3], out = 0.0;
+    MathExtra::sub3(x, y, q);
+    const double length = MathExtra::len3(q);
+    for (int d = 0; d < 3; d++) q[d] = y[d] + (length > 0.0 ? step / length * q[d] : 0.0);
+    View view = view_from(q);
+    std::vector<Plane> planes;
+    for (int k = 0; k < (int) order.size(); k++) {
+      Plane plane;
+      double distance;
+      if (find_plane(*order[k], view, y, plane, distance)) {
+        go_behind(y, plane, view);
+        if (k < convex && order[k]->match(view.from) == (side > 0.0))
+          find_planes(*order[k], view.from, y, planes);
+        planes.push_back(plane);
+      } else if (distance > 0.0)
+        return false;
+    }
+    for (const auto &plane : planes) out = std::max(out, plane.height);
+    // where an edge bends, its places are about as near, and the last steps are short
+    if (out <= converged && (change <= converged || round >= ROUNDS)) break;
+    if (round > 2 * ROUNDS) return false;
+    double to[3], way[3];
+    for (int d = 0; d < 3; d++) to[d] = share * (x[d] - y[d]);
+    if (!nearest_behind(planes, to, way)) return false;
+    change = MathExtra::len3(way) / share;
+    if (MathExtra::dot3(way, before) < 0.0) share *= 0.5;
+    MathExtra::copy3(way, before);
+    MathExtra::add3(y, way, y);
+  }
+  const double distance = sqrt(MathExtra::distsq3(x, y));
+  if (distance >= nearest || !is_on_edge(y)) return false;
+  nearest = distance;
+  edge = {{y[0], y[1], y[2]}, distance};
+  return true;
+}
+
+bool MPMRegionEdge::is_on_edge(const double *y) const
+{
+  return std::all_of(order.begin(), order.end(), [&](const auto *part) {
+    return side * part->find(y, far, false) <= step;
+  });
+}
+
+/** A distance within which the set has no place. Behind planes of parts that are convex, no place
+ *  of the set is further away. */
+double MPMRegionEdge::bound(const double *center) const
+{
+  View view = view_from(center);
+  double greatest = 0.0;
+  for (int k = 0; k < (int) order.size(); k++) {
+    Plane plane;
+    double distance;
+    const bool seen = find_plane(*order[k], view, center, plane, distance);
+    greatest = std::max(greatest, distance);
+    if (seen && k < convex) go_behind(center, plane, view);
+  }
+  return greatest;
+}
+
+double MPMRegionEdge::distance_of(const Cell &cell, bool farthest) const
+{
+  double sum = 0.0;
+  for (int d = 0; d < dim; d++) {
+    const double off = fabs(x[d] - cell.center[d]);
+    const double way = farthest ? off + cell.half : std::max(off - cell.half, 0.0);
+    sum += way * way;
+  }
+  return sqrt(sum);
+}
+
+/** Cells between two distances from x. Is the search complete? */
+bool MPMRegionEdge::search_cells(double inner, double outer, int &budget)
+{
+  constexpr double NEARER = 0.95, THINNEST = 0.02;
+  std::priority_queue<Cell> cells;
+  cells.push({0.0, {x[0], x[1], x[2]}, outer});
+  while (!cells.empty()) {
+    const Cell cell = cells.top();
+    cells.pop();
+    if (cell.lower >= NEARER * std::min(nearest, outer)) break;
+    if (budget-- <= 0) return false;
+    const double reach = cell.half * sqrt((double) dim) + step;
+    if (bound(cell.center) > reach) continue;
+    search_from(cell.center);
+    if (cell.half < THINNEST * std::max(cell.lower, step / STEP)) continue;
+    for (int k = 0; k < (1 << dim); k++) {
+      Cell part = cell;
+      part.half *= 0.5;
+      for (int d = 0; d < dim; d++) part.center[d] += (k >> d & 1) ? part.half : -part.half;
+      part.lower = distance_of(part, false);
+      if (part.lower < nearest && part.lower < outer && distance_of(part, true) > inner)
+        cells.push(part);
+    }
+  }
+  return true;
+}
