@@ -284,3 +284,23 @@ TEST(FoldedBag, StripThatYields)
   EXPECT_NEAR(run.again.evaluate("f_e[2]") / spent, 1.0, 1e-13);
   EXPECT_TRUE(identical(run.whole.gather(), run.again.gather()));
 }
+
+// The neighbor of a node across a periodic face that no longer has its copy here is not the atom at
+// the other end of the box: with a greater cutoff the strip goes on as in a larger box
+SERIAL_TEST(Strip, StretchesAcrossAPeriodicFace)
+{
+  ScratchFile file("strip.msh", line(10, {0.5, 0.5, 0}, {0.9, 0.5, 0}).text());
+  const auto flight = [&](const char *length, const char *more) {
+    return box(2, "lj", "p p p", std::string("0 ") + length + " 0 1 -0.1 0.1", 1, 0.01) +
+        "fix grid all mpm 0.05\ncreate_points 1 mesh " + file.name +
+        " thickness 0.01\nfix rubber all mpm/material density 1 neohookean 0.05 0.3\n"
+        "fix skin all mpm/elements " +
+        file.name + " thickness 0.01\n" + more +
+        "variable v atom 3+6*(x-0.7)\nvelocity all set v_v 0 0\ntimestep 0.002\n"
+        "thermo_modify lost ignore\nrun 160\n";
+  };
+  expect_error(flight("2", ""), "was stretched and needs a larger comm_modify cutoff");
+  Scene small(flight("2", "comm_modify cutoff 0.2\n")), large(flight("8", ""));
+  EXPECT_NEAR(small.fix("skin")->compute_vector(0), large.fix("skin")->compute_vector(0),
+              1e-9 * large.fix("skin")->compute_vector(0));
+}

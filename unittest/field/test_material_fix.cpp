@@ -375,3 +375,30 @@ TEST(MaterialFix, RestartKeepsHistoryAndWork)
   for (int k = 0; k < MPM_NS::NWORK; k++)
     EXPECT_EQ(over_ranks(a->work[k]), (k + 1) * (nranks() == 1 ? 1 : 3));
 }
+
+// A material that is defined again for deformed points begins with a new history, and says so; what
+// comes from a restart file, and laws without a history, do not
+TEST(Material, ThatIsDefinedAgainSaysWhatIsLost)
+{
+  const auto scene = [](const std::string &law) {
+    return plane("si", "f f", "0 0.4 0 0.6", 1, 0.01) + "region b block 0 0.4 0 0.4 INF INF\n" +
+        "fix grid all mpm 0.1\ncreate_points 1 region b ppc 2\n"
+        "fix m all mpm/material density 1000 " +
+        law +
+        "\nfix floor all mpm/boundary ylo slip\nfix g all gravity 9.81 vector 0 -1 0\n"
+        "timestep 1e-4\n";
+  };
+  const std::string sand = "drucker/prager 1e6 0.3 30", says = "were deformed before";
+  const std::string again = "unfix m\nfix m all mpm/material density 1000 ";
+  EXPECT_EQ(lines_that_say(scene(sand) + "run 10\n" + again + sand + "\nrun 1\n", says).size(), 1u);
+  EXPECT_EQ(lines_that_say(scene(sand) + again + sand + "\nrun 10\nrun 1\n", says).size(), 0u);
+  const std::string rubber = "neohookean 1e6 0.3";
+  EXPECT_EQ(lines_that_say(scene(rubber) + "run 10\n" + again + rubber + "\nrun 1\n", says).size(),
+            0u);
+  const ScratchFile file("sand.restart");
+  Scene run(scene(sand) + "run 10\nwrite_restart " + file.name + "\n");
+  EXPECT_EQ(lines_that_say(
+                "read_restart " + file.name + "\n" + lines_again(scene(sand)) + "run 1\n", says)
+                .size(),
+            0u);
+}

@@ -436,4 +436,8 @@ SERIAL_TEST(BadInput, IsRefused)
         {"vary T0 table 0 1 1 0.5", "can vary"},
         {"vary CP table 0 1 1 2 random CP normal 0.1 1 7", "random CP"}})
     expect_error(bar_of("conducting 1 0 1 " + thermal, 10, "") + "run 0\n", message);
+  expect_error(replaced(bar_of("conducting 1 0 1", 10, ""), "mpm/heat",
+                        "mpm/heat region wl temperature 4 region wl flux 1") +
+                   "run 0\n",
+               "is given twice for the same region: wl");
 }

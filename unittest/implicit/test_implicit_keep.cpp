@@ -151,3 +151,43 @@ SERIAL_TEST(Free, BodiesAreToldAtOnce)
           "timestep 1.0\nrun 1\n",
       "along the force (0, 88.39, -88.39)");
 }
+
+// A rigid motion that walls leave free has no stiffness: of all solutions the one without it is
+// found, between frictionless platens, in a bar that is pulled, and in a periodic cell that is heated
+TEST(Free, MotionsAreNotMade)
+{
+  const auto solve = [](const std::string &solver) {
+    return "fix solve all mpm/implicit static tolerance 1e-8 solver " + solver +
+        "\ntimestep 1.0\nrun 3\n";
+  };
+  const auto mean = [](Scene &run, int d) {
+    double sum = 0.0;
+    for (int i = 0; i < run.n(); i++) sum += run.x()[i][d];
+    double all;
+    MPI_Allreduce(&sum, &all, 1, MPI_DOUBLE, MPI_SUM, run.lmp->world);
+    return all / run.lmp->atom->natoms;
+  };
+  for (const char *solver : {"multigrid", "blocks"})
+    for (const char *frame : {"frame total", ""}) {
+      SCOPED_TRACE(std::string(solver) + frame);
+      Scene platens(plane("si", "f f", "0 1.2 -2 2", 1, 0.03) +
+                    body("block 0 1.2 0.2 1.05 INF INF", "density 1000 neohookean 1e6 0.3",
+                         std::string("0.1 ") + frame) +
+                    "fix one all mpm/boundary xlo slip\nfix two all mpm/boundary xhi slip velocity "
+                    "-0.01 0 0\n" +
+                    solve(solver));
+      EXPECT_NEAR(mean(platens, 1), 0.625, 1e-9);
+
+      Scene bar(space("si", "f f f", "0 0.6 -1 1 -1 1", 1, 0.03) +
+                body("block 0 0.6 0 0.4 0 0.4", "density 1000 neohookean 1e6 0.3",
+                     std::string("0.1 ") + frame) +
+                "fix one all mpm/boundary xlo slip\nfix two all mpm/boundary xhi slip velocity "
+                "0.005 0 0\n" +
+                solve(solver));
+      double turned = 0.0;
+      for (int i = 0; i < bar.n(); i++) turned += bar.points().F[i][5] - bar.points().F[i][7];
+      EXPECT_NEAR(measured("turned", turned / bar.lmp->atom->natoms), 0.0, 1e-9);
+      EXPECT_NEAR(mean(bar, 1), 0.2, 1e-9);
+      EXPECT_NEAR(mean(bar, 2), 0.2, 1e-9);
+    }
+}

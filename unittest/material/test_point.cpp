@@ -464,6 +464,25 @@ TEST(Point, LeavingARangeWarnsOnce)
   EXPECT_NE(found[1].find("at step 31 "), std::string::npos) << found[1];
 }
 
+// Behind a shock in a body that bears the stress of another temperature than T0: its speed begins
+// with that of waves ahead, and rises; its heat is positive
+TEST(Point, ShockInABodyUnderThermalStress)
+{
+  const std::string thermal = " thermal adiabatic 1000 300 expansion 1e-4";
+  for (const std::string law : {"hencky 1e6 0.3", "eos linear 1e6 strength elastic 1e5"})
+    for (const double T : {300.0, 400.0}) {
+      auto t = drive("shock -1e3 strain 0.02 steps 5 temperature " + MPM_TEST::strprintf("%g", T) +
+                     " material density 1000 " + law + thermal);
+      EXPECT_EQ(t["time"][0], 0.0);
+      EXPECT_EQ(t["sxx"][0]<-1e4, T> 300.0) << law;
+      for (int k = 1; k <= 5; k++) {
+        EXPECT_GT(t["us"][k], t["us"][k - 1]) << law << " " << T << " " << k;
+        EXPECT_GT(t["temperature"][k], T - 1e-3) << law << " " << k;
+      }
+      EXPECT_NEAR(t["us"][1], t["wavespeed"][0], 0.005 * t["us"][1]) << law << " " << T;
+    }
+}
+
 TEST(Point, ErrorsNameTheRemedy)
 {
   const std::string rubber = " material " + RUBBER;

@@ -222,6 +222,17 @@ void FixMPMElements::sort_rows()
   body->pool.swap(sorted);
 }
 
+/** The image of atom j that is nearest to atom i; -1 if only others are here. */
+int FixMPMElements::find_image(int i, int j) const
+{
+  const int image = domain->closest_image(i, j);
+  double here[3], nearest[3];
+  MathExtra::sub3(atom->x[image], atom->x[i], here);
+  MathExtra::copy3(here, nearest);
+  nearest_image(*domain, nearest);
+  return MathExtra::lensq3(nearest) < 0.999 * MathExtra::lensq3(here) ? -1 : image;
+}
+
 void FixMPMElements::find_nodes()
 {
   sort_rows();
@@ -234,15 +245,15 @@ void FixMPMElements::find_nodes()
       body->owner.push_back(i);
       const int nnode = body->nodes_of(r);
       for (int m = 0; m < nnode; m++) {
-        const int j = atom->map((tagint) r[2 + m]);
-        if (j < 0)
+        const int j = atom->map((tagint) r[2 + m]), image = j < 0 ? j : find_image(i, j);
+        if (image < 0)
           error->one(
               FLERR,
               "Fix mpm/elements {}: node {} of element {} is out of reach at step {}: "
               "it has left the box, or the element was stretched and needs a larger comm_modify "
               "cutoff than the present {:.6g}",
               id, (tagint) r[2 + m], (bigint) r[0], update->ntimestep, comm->get_comm_cutoff());
-        body->nodes.back()[m] = domain->closest_image(i, j);
+        body->nodes.back()[m] = image;
       }
     }
   }

@@ -186,6 +186,7 @@ class FixMPMElements : public FixMPMState, public MPMInternalForce, private MPME
   void make_elements(const MPM_NS::Mesh &);
   /** Puts rows in the order of the atoms that own them, without those that none owns. */
   void sort_rows();
+  int find_image(int i, int j) const;
   void find_nodes();
   void compute(bool starting);
   void give_means_to_nodes();

@@ -15,6 +15,7 @@
 #include "material/material_point.h"
 
 #include "atom.h"
+#include "base/mpm_points.h"
 #include "comm.h"
 #include "error.h"
 #include "force.h"
@@ -103,6 +104,8 @@ void FixMPMMaterial::init()
   counts_stress = !modify->get_compute_by_style("^mpm/energy$").empty();
   if (material->is_of_surfaces()) check_surfaces();
   check_gas(lmp, *this);
+  if (is_new) check_history();
+  is_new = false;
   assign_mass();
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
@@ -136,6 +139,37 @@ void FixMPMMaterial::check_surfaces() const
                "Fix mpm/material {}: its law bears nothing across a surface, and {} of its points "
                "are no nodes of one: use fix mpm/elements with thickness and axes for them",
                id, all);
+}
+
+void FixMPMMaterial::unpack_restart(int i, int nth)
+{
+  FixMPMState::unpack_restart(i, nth);
+  is_new = false;
+}
+
+/** The history of points goes with the fix that it belongs to. */
+void FixMPMMaterial::check_history() const
+{
+  static const double UNIT[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  constexpr double ROUND_OFF = 1.0e-9;
+  if (nhistory == 0) return;
+  const MPMPoints &points = *MPMPoints::get(atom);
+  bigint n = 0, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    if (!(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
+    bool is_deformed = false;
+    for (int k = 0; k < 9; k++) is_deformed |= fabs(points.F[i][k] - UNIT[k]) > ROUND_OFF;
+    for (int k = 0; k < 6; k++) is_deformed |= points.tau[i][k] != 0.0;
+    n += is_deformed;
+  }
+  MPI_Allreduce(&n, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (!all || comm->me != 0) return;
+  error->warning(FLERR,
+                 "Fix mpm/material {}: {} points were deformed before it was defined, and what it "
+                 "keeps for them begins anew:{}. To go on from the state of a fix with the same ID "
+                 "that was removed, write a restart file before, read it, and define the material "
+                 "there",
+                 id, all, names());
 }
 
 /** Ranges of validity: each rank notes the first step in which one of its points is outside; ranks

@@ -38,6 +38,7 @@ class FixMPMMaterial : public FixMPMState {
   void post_run() override { report_exits(); }
   void write_restart(FILE *) override;
   void restart(char *) override;
+  void unpack_restart(int, int) override;
 
   std::unique_ptr<MPM_NS::Material> material;
   int nhistory;       ///< number of columns of history
@@ -84,7 +85,9 @@ class FixMPMMaterial : public FixMPMState {
   bool counts_stress = false;    // is there a compute mpm/energy?
   std::vector<Exit> exits;       ///< for each range of the material
   void report_exits();
+  bool is_new = true;    // no run has begun, and there is no state from a restart file
   void check_surfaces() const;
+  void check_history() const;
   std::string names() const;
 };
 

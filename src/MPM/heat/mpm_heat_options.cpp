@@ -141,14 +141,15 @@ Options MPMHeatOptions::declare(int dim)
         {is_explicit, "tolerance", "is of implicit steps: remove it, or use time euler or sdirk2"}};
     for (std::size_t k = 0; k < pairs.size(); k++) {
       const auto &[F, H, now] = pairs[k];
-      rules.push_back({F[0] == F[1], "contact", "needs two different bodies: {contact}"});
+      const std::string bodies = F[0] + " " + F[1];
+      rules.push_back({F[0] == F[1], "contact", "needs two different bodies: " + bodies});
       rules.push_back({H.variable.empty() && !(H.value >= 0.0), "contact",
-                       "needs a conductance that is not negative: {contact}"});
+                       "needs a conductance that is not negative: " + bodies});
       for (std::size_t j = 0; j < k; j++) {
         const auto &other = pairs[j].field;
         const bool same = F[0] == other[0] && F[1] == other[1];
         rules.push_back({same || (F[0] == other[1] && F[1] == other[0]), "contact",
-                         "is given twice for the same bodies: {contact}"});
+                         "is given twice for the same bodies: " + bodies});
       }
     }
     const auto refuse = [&](const Condition &c, const std::string &keyword) {
@@ -172,7 +173,7 @@ Options MPMHeatOptions::declare(int dim)
       refuse(condition, region.empty() ? "surface" : "region");
       for (std::size_t j = 0; j < k; j++)
         rules.push_back({!region.empty() && surfaces[j].region == region, "region",
-                         "is given twice for the same region: {region}"});
+                         "is given twice for the same region: " + surfaces[k].region});
     }
     return rules;
   });

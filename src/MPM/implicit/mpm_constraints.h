@@ -189,10 +189,6 @@ class MPMConstraints {
   const double *slip_of(const std::vector<double> &u);
   void find_friction(const std::vector<double> &u, const std::vector<double> &residual);
 };
-/** Statics: is there a body in the first field that no wall holds along the external forces
- *  [node][dim] on it? Returns what is wrong, or nothing. Collective. */
-std::string find_free_body(MPMSolvedNodes &, MPMConstraints &, MPM_NS::LatticeRanks &,
-                           const std::vector<double> &external);
 
 /** Finds groups of nodes that walls hold together, along lines through surfaces and faces
  *  (MPMLineTies), and the part of P within each group, from unit vectors of one node of each group

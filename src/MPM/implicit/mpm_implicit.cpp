@@ -20,8 +20,9 @@ MPMImplicit::MPMImplicit(LAMMPS *lmp, const std::vector<MPMField *> &fields,
                          const MPMImplicitOptions &options, MPMPointAccelerations &kept) :
     options(options),
     stabilize(options.stabilize), nodes(lmp, fields), balance(nodes, options.time),
-    constraints(nodes), parts{nodes, balance, constraints, options, now, times}, system(parts),
-    newton(parts, system), factors(parts, system, newton),
+    constraints(nodes),
+    free_bodies(nodes), parts{nodes, balance, constraints, free_bodies, options, now, times},
+    system(parts), newton(parts, system), factors(parts, system, newton),
     motion(nodes, balance, constraints, newton, options.time, kept)
 {
 }
@@ -88,9 +89,12 @@ bool MPMImplicit::begin_step(double dt)
   }
   if (stabilize > 0.0) balance.stabilize(stabilize);
   // elements hold nodes together that have no point in common
+  free_bodies.clear();
   if (rests && now.failure.empty() && !constraints.has_contacts() && !pressure &&
-      !balance.tangent().has_loads() && nodes.field.elements.empty())
-    now.failure = find_free_body(nodes, constraints, system.lattice_ranks(), balance.external);
+      nodes.field.elements.empty()) {
+    const auto pushed = free_bodies.find(constraints, system.lattice_ranks(), balance.external);
+    if (!balance.tangent().has_loads()) now.failure = pushed;    // others are not in these forces
+  }
   return now.failure.empty();
 }
 

@@ -12,6 +12,7 @@
 #include "implicit/mpm_constraints.h"
 #include "implicit/mpm_coupled_pressure.h"
 #include "implicit/mpm_force_balance.h"
+#include "implicit/mpm_free_bodies.h"
 #include "implicit/mpm_kept_factors.h"
 #include "implicit/mpm_motion_system.h"
 #include "implicit/mpm_newton.h"
@@ -69,6 +70,7 @@ class MPMImplicit {
   MPMSolvedNodes nodes;
   MPMForceBalance balance;
   MPMConstraints constraints;
+  MPMFreeBodies free_bodies;
   const MPMImplicitParts parts;
   MPMMotionSystem system;
   MPMNewton newton;

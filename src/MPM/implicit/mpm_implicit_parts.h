@@ -21,6 +21,7 @@ namespace LAMMPS_NS {
 
 class MPMConstraints;
 class MPMForceBalance;
+class MPMFreeBodies;
 
 /** Result of an implicit step. */
 struct MPMImplicitReport {
@@ -97,6 +98,7 @@ struct MPMImplicitParts {
   MPMSolvedNodes &nodes;
   MPMForceBalance &balance;
   MPMConstraints &constraints;
+  MPMFreeBodies &free_bodies;
   const MPMImplicitOptions &options;
   MPMImplicitReport &report;
   MPMImplicitTimes &times;

@@ -11,6 +11,7 @@
 #include "implicit/mpm_constraints.h"
 #include "implicit/mpm_coupled_pressure.h"
 #include "implicit/mpm_force_balance.h"
+#include "implicit/mpm_free_bodies.h"
 #include "implicit/mpm_motion_system.h"
 #include "implicit/mpm_solved_nodes.h"
 
@@ -248,6 +249,7 @@ SolveReport MPMNewton::find_correction(const std::vector<double> &u, Progress &a
     at.stiffness = balance.linearize(u, report.asymmetry);
   }
   if (at.wall_moves) add_prescribed_forces();
+  free_bodies.balance(free.data());
   SolveGoal goal;
   goal.relative = at.accuracy;
   if (at.left > 0.0) goal.relative = std::max(at.accuracy, 0.1 * at.enough / at.left);
@@ -265,6 +267,7 @@ SolveReport MPMNewton::find_correction(const std::vector<double> &u, Progress &a
     report.indefinite++;
     if (solved.iterations == 0) system.precondition(free.data(), du.data());
   }
+  free_bodies.hold(du.data());
   return solved;
 }
 

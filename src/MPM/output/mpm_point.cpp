@@ -290,6 +290,7 @@ void MPMPoint::run_shock(MaterialPoint &initial)
 {
   constexpr int PARTS = 500, MOST = 50;
   constexpr double ROUND_OFF = 1.0e-13, MOMENT = 1.0e-6;
+  initial.time = 0.0;
   write(initial, 0);
   initial_pressure = -initial.stress(0);
   const double start = initial.internal_energy();
@@ -328,15 +329,15 @@ void MPMPoint::set_temperature(MaterialPoint &point)
   for (std::size_t k = 0; k < variables.size(); k++)
     if (variables[k].name == "temperature") {
       point.batch.history[k][0] = temperature;
-      MaterialPoint rest(point);
+      // laws see the temperature of the start of a step: one at rest gives the stress
       const double none[9] = {};
-      rest.move(none, 1.0e-6 * duration);
-      if (std::fabs(rest.history(k) - temperature) > 1.0e-6 * std::fabs(temperature))
+      point.move(none, 1.0e-6 * duration);
+      if (std::fabs(point.history(k) - temperature) > 1.0e-6 * std::fabs(temperature))
         error->all(FLERR,
                    "Mpm_point temperature {}: the temperature of this material belongs to its "
                    "energy, or to what has melted, and would be {:.6g} in the first step: give T0 "
                    "of its thermal part instead",
-                   temperature, rest.history(k));
+                   temperature, point.history(k));
       return;
     }
   error->all(FLERR,
