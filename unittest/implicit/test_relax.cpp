@@ -393,6 +393,7 @@ SERIAL_TEST(Relax, BadInput)
       {{"fix rest all mpm/relax", "missing argument"},
        {"fix rest all mpm/relax 0", "ratio of forces"},
        {"fix rest all mpm/relax nan", "nan"},
+       {"fix rest all mpm/relax 1.5", "needs a ratio below 1"},
        {"fix rest all mpm/relax 1e-6 every 0", "every"},
        {"fix rest all mpm/relax 1e-6 stop perhaps", "perhaps"},
        {"fix rest all mpm/relax 1e-6 damp 0.5", "damp"},

@@ -1861,6 +1861,24 @@ timestep 0.001
        {"unfix grid\nfix s all mpm/dt 0.5\nrun 0", "needs a fix mpm"}});
 }
 
+// Smooth faces that move along themselves do nothing, and a warning says so
+TEST(BadInput, SmoothFacesThatMoveAlongThemselves)
+{
+  const auto warnings = [](const std::string &kind) {
+    return lines_that_say(plane("lj", "f f", "0 8 0 8") +
+                              body("block 0 8 0 4 INF INF", "density 1.0 neohookean 10.0 0.3") +
+                              "fix w all mpm/boundary " + kind + "\nrun 0\n",
+                          "do not feel that they move")
+        .size();
+  };
+  EXPECT_EQ(warnings("ylo slip velocity 1 0 0"), 1u);
+  EXPECT_EQ(warnings("ylo separate displacement 0.1 0 0"), 1u);
+  EXPECT_EQ(warnings("ylo slip velocity 0 0.1 0"), 0u);
+  EXPECT_EQ(warnings("ylo slip friction 0.3 velocity 1 0 0"), 0u);
+  EXPECT_EQ(warnings("ylo stick velocity 1 0 0"), 0u);
+  EXPECT_EQ(warnings("xlo ylo slip velocity 1 0 0"), 0u);
+}
+
 TEST(BadInput, NarrowChannels)
 {
   const std::string scene = plane("lj", "f f", "0 2 0 8") +

@@ -58,6 +58,10 @@ Options MPMRelaxOptions::declare()
   o.argument(number(tolerance, "largest ratio of forces", POSITIVE));
   o.add("every", {integer(look_every, "N", POSITIVE, "check the forces every this many steps")});
   o.add("stop", {yes_no(stops)}, "end the run when forces are balanced");
+  o.refuse([this] {
+    return OptionRules{
+        {tolerance >= 1.0, "", "needs a ratio below 1, which forces without balance have"}};
+  });
   return o;
 }
 

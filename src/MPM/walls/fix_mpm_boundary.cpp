@@ -67,11 +67,33 @@ FixMPMBoundary::FixMPMBoundary(LAMMPS *lmp, int narg, char **arg) :
                  wall.region_id);
   }
 
+  if (slides_in_vain() && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/boundary {}: faces without friction do not feel that they move along "
+                   "themselves: give friction, or use stick",
+                   id);
+
   scalar_flag = vector_flag = 1;
   size_vector = 6;
   global_freq = 1;
   extscalar = extvector = 1;
   restart_global = 1;
+}
+
+/** Does the motion of smooth faces have a part along all of them? */
+bool FixMPMBoundary::slides_in_vain() const
+{
+  if (is_region() || wall.kind == MPMWall::STICK || wall.rubs()) return false;
+  for (int d = 0; d < 3; d++) {
+    const auto &v = wall.velocity[d];
+    const auto &faces = wall.face_list;
+    const bool moves = v.value != 0.0 || !v.variable.empty();
+    if (moves && std::none_of(faces.begin(), faces.end(), [d](int face) {
+          return face / 2 == d;
+        }))
+      return true;
+  }
+  return false;
 }
 
 /** Reads where the wall is; returns the index of the next argument. */

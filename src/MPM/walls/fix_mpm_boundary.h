@@ -123,6 +123,7 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   bool has_rubbed = false;                  // was rub() called in this step?
 
   void rub(double dt);
+  bool slides_in_vain() const;
   int read_place(int narg, char **arg);
   void check_field(const MPMField &) const;
   void check_faces() const;
