@@ -25,22 +25,25 @@ MPMRegionEdge::MPMRegionEdge(const MPMRegionSurface &surface, const double *x, d
     dim(surface.dim), far(far), side(surface.is_union ? -1.0 : 1.0),
     step(STEP * MPMRegionSurface::scale_at(x, least))
 {
-  for (const auto &part : surface.parts) order.push_back(&part);
-  const auto last = std::stable_partition(order.begin(), order.end(), [&](const auto *part) {
-    return part->is_convex(!surface.is_union);
-  });
-  convex = (int) (last - order.begin());
+  order.reserve(surface.parts.size());
+  for (const bool first : {true, false}) {
+    for (const auto &part : surface.parts)
+      if (part.is_convex(!surface.is_union) == first) order.push_back(&part);
+    if (first) convex = (int) order.size();
+  }
 }
 
 MPMRegionEdge::Answer MPMRegionEdge::find(double limit, Place &place)
 {
   constexpr double WIDER = 8.0;    // than a distance that is too short
   nearest = limit;
-  const double more = bound(x);
-  if (more >= limit) return Answer::NONE;
-  step = std::max(step, STEP * more);
+  if (!all_convex()) {
+    const double more = bound(x);
+    if (more >= limit) return Answer::NONE;
+    step = std::max(step, STEP * more);
+  }
   const bool found = search_from(x);
-  bool complete = found && convex == (int) order.size();
+  bool complete = found && all_convex();
   double inner = 0.0, outer = WIDER / STEP * step;
   for (int budget = 1000; !complete && budget > 0; outer *= WIDER) {
     outer = std::min(outer, nearest);
@@ -55,12 +58,12 @@ MPMRegionEdge::Answer MPMRegionEdge::find(double limit, Place &place)
   return complete ? Answer::NONE : Answer::UNKNOWN;
 }
 
-MPMRegionEdge::View MPMRegionEdge::view_from(const double *place) const
+void MPMRegionEdge::view_from(const double *place)
 {
   constexpr double OFF = 0.1;    // so that the place is in no plane across
-  View view = {{place[0], place[1], place[2]}, {}};
+  MathExtra::copy3(place, view.from);
   for (int d = 0; d < dim; d++) view.from[d] += OFF * step * (d + 1);
-  return view;
+  view.planes.clear();
 }
 
 /** Is the surface of a part flat, with this normal at this place? At its edges it need go on in some
@@ -106,15 +109,15 @@ bool MPMRegionEdge::is_flat(const MPMRegionSurface &part, const double *from, co
  *  the distance of what is seen, far if it is nothing, negative in the part. A flat end that faces
  *  a plane of the view, with nothing between them, does not count, as that of a cylinder that is a
  *  hole in a plate: what is next to nearest does. */
-bool MPMRegionEdge::find_plane(const MPMRegionSurface &part, const View &view, const double *y,
-                               Plane &plane, double &distance) const
+bool MPMRegionEdge::find_plane(const MPMRegionSurface &part, const double *y, Plane &plane,
+                               double &distance)
 {
   const double outward = part.match(view.from) ? -side : side;
   double nearest_to_y = far;
   part.find_places(view.from, far);
   distance = far;
-  const auto places = part.places;
-  for (const auto &place : places) {
+  seen = part.places;
+  for (const auto &place : seen) {
     double n[3];
     MathExtra::sub3(view.from, place.x, n);
     const double length = MathExtra::len3(n);
@@ -141,9 +144,9 @@ bool MPMRegionEdge::find_plane(const MPMRegionSurface &part, const View &view, c
 
 /** The same of a convex part, seen from inside, where all surfaces that meet at an edge of its own
  *  are seen: all of them are planes that the part is behind. */
-void MPMRegionEdge::find_planes(const MPMRegionSurface &part, const double *from, const double *y,
-                                std::vector<Plane> &planes) const
+void MPMRegionEdge::find_planes(const MPMRegionSurface &part, const double *y)
 {
+  const double *const from = view.from;
   part.find_places(from, far);
   for (const auto &place : part.places) {
     Plane plane;
@@ -157,7 +160,7 @@ void MPMRegionEdge::find_planes(const MPMRegionSurface &part, const double *from
   }
 }
 
-void MPMRegionEdge::go_behind(const double *y, const Plane &plane, View &view) const
+void MPMRegionEdge::go_behind(const double *y, const Plane &plane)
 {
   double height = plane.height + step;
   for (int d = 0; d < 3; d++) height += plane.n[d] * (view.from[d] - y[d]);
@@ -168,7 +171,7 @@ void MPMRegionEdge::go_behind(const double *y, const Plane &plane, View &view) c
 
 /** Way from y to the place nearest to y + to that is behind all planes, in no more than three of
  *  which it lies: all choices of these are tried. Returns false where there is none. */
-bool MPMRegionEdge::nearest_behind(std::vector<Plane> &planes, const double *to, double *way) const
+bool MPMRegionEdge::nearest_behind(const double *to, double *way)
 {
   double out = 0.0;
   for (const auto &plane : planes) out = std::max(out, plane.height);
@@ -228,40 +231,39 @@ bool MPMRegionEdge::search_from(const double *start)
   constexpr int ROUNDS = 30;
   const double converged = 1.0e-3 * step;
   double y[3] = {start[0], start[1], start[2]};
-  double change = far, share = 1.0, before[3] = {};
+  double share = 1.0, before[3] = {};
   for (int round = 0;; round++) {
     // from a little toward x, where the parts are seen as from x
     double q[3], out = 0.0;
     MathExtra::sub3(x, y, q);
     const double length = MathExtra::len3(q);
     for (int d = 0; d < 3; d++) q[d] = y[d] + (length > 0.0 ? step / length * q[d] : 0.0);
-    View view = view_from(q);
-    std::vector<Plane> planes;
+    view_from(q);
+    planes.clear();
     for (int k = 0; k < (int) order.size(); k++) {
       Plane plane;
       double distance;
-      if (find_plane(*order[k], view, y, plane, distance)) {
-        go_behind(y, plane, view);
-        if (k < convex && order[k]->match(view.from) == (side > 0.0))
-          find_planes(*order[k], view.from, y, planes);
+      if (find_plane(*order[k], y, plane, distance)) {
+        go_behind(y, plane);
+        if (k < convex && order[k]->match(view.from) == (side > 0.0)) find_planes(*order[k], y);
         planes.push_back(plane);
       } else if (distance > 0.0)
         return false;
     }
     for (const auto &plane : planes) out = std::max(out, plane.height);
     // where an edge bends, its places are about as near, and the last steps are short
-    if (out <= converged && (change <= converged || round >= ROUNDS)) break;
+    if (out <= converged && round >= ROUNDS) break;
     if (round > 2 * ROUNDS) return false;
     double to[3], way[3];
     for (int d = 0; d < 3; d++) to[d] = share * (x[d] - y[d]);
-    if (!nearest_behind(planes, to, way)) return false;
-    change = MathExtra::len3(way) / share;
+    if (!nearest_behind(to, way)) return false;
+    if (out <= converged && MathExtra::len3(way) <= converged * share) break;
     if (MathExtra::dot3(way, before) < 0.0) share *= 0.5;
     MathExtra::copy3(way, before);
     MathExtra::add3(y, way, y);
   }
   const double distance = sqrt(MathExtra::distsq3(x, y));
-  if (distance >= nearest || !is_on_edge(y)) return false;
+  if (distance >= nearest || !(all_convex() || is_on_edge(y))) return false;
   nearest = distance;
   edge = {{y[0], y[1], y[2]}, distance};
   return true;
@@ -276,16 +278,16 @@ bool MPMRegionEdge::is_on_edge(const double *y) const
 
 /** A distance within which the set has no place. Behind planes of parts that are convex, no place
  *  of the set is further away. */
-double MPMRegionEdge::bound(const double *center) const
+double MPMRegionEdge::bound(const double *center)
 {
-  View view = view_from(center);
+  view_from(center);
   double greatest = 0.0;
   for (int k = 0; k < (int) order.size(); k++) {
     Plane plane;
     double distance;
-    const bool seen = find_plane(*order[k], view, center, plane, distance);
+    const bool is_seen = find_plane(*order[k], center, plane, distance);
     greatest = std::max(greatest, distance);
-    if (seen && k < convex) go_behind(center, plane, view);
+    if (is_seen && k < convex) go_behind(center, plane);
   }
   return greatest;
 }

@@ -57,19 +57,21 @@ class MPMRegionEdge {
   Place edge = {};
   std::vector<const MPMRegionSurface *> order;    // first those that are convex
   int convex;                                     // number of them
+  View view;
+  std::vector<Plane> planes;    // of all parts
+  std::vector<Place> seen;      // of a part
 
-  View view_from(const double *) const;
+  bool all_convex() const { return convex == (int) order.size(); }
+  void view_from(const double *);
   bool is_flat(const MPMRegionSurface &part, const double *from, const Place &,
                const double *n) const;
-  bool find_plane(const MPMRegionSurface &part, const View &, const double *y, Plane &,
-                  double &distance) const;
-  void go_behind(const double *y, const Plane &, View &) const;
-  void find_planes(const MPMRegionSurface &part, const double *from, const double *y,
-                   std::vector<Plane> &) const;
-  bool nearest_behind(std::vector<Plane> &, const double *to, double *way) const;
+  bool find_plane(const MPMRegionSurface &part, const double *y, Plane &, double &distance);
+  void find_planes(const MPMRegionSurface &part, const double *y);
+  void go_behind(const double *y, const Plane &);
+  bool nearest_behind(const double *to, double *way);
   bool search_from(const double *start);
   bool is_on_edge(const double *y) const;
-  double bound(const double *center) const;
+  double bound(const double *center);
   bool search_cells(double inner, double outer, int &budget);
   double distance_of(const Cell &, bool farthest) const;
 };

@@ -32,11 +32,20 @@
 
 using namespace LAMMPS_NS;
 
+static bool is_convex_body(const char *style)
+{
+  static const char *const CONVEX[] = {"block", "cone",  "cylinder", "ellipsoid",
+                                       "plane", "prism", "sphere"};
+  return std::any_of(std::begin(CONVEX), std::end(CONVEX), [style](const char *convex) {
+    return strcmp(style, convex) == 0;
+  });
+}
+
 MPMRegionSurface::MPMRegionSurface(Region *region, int dim) :
     region(region), mesh(dynamic_cast<RegMPMMesh *>(region)), dim(dim),
     is_cone(strcmp(region->style, "cone") == 0),
     has_axis(is_cone || strcmp(region->style, "cylinder") == 0),
-    is_union(strcmp(region->style, "union") == 0)
+    is_union(strcmp(region->style, "union") == 0), is_body(is_convex_body(region->style))
 {
   if (mesh) mesh->need_distance();
   if (is_union || strcmp(region->style, "intersect") == 0)
@@ -61,16 +70,6 @@ double MPMRegionSurface::scale_at(const double *x, double distance)
 {
   constexpr double ROUND_OFF = 1.0e-7;
   return std::max(distance, ROUND_OFF * size_of(x));
-}
-
-bool MPMRegionSurface::is_convex(bool inside) const
-{
-  static const char *const CONVEX[] = {"block", "cone",  "cylinder", "ellipsoid",
-                                       "plane", "prism", "sphere"};
-  return (region->interior != 0) == inside &&
-      std::any_of(std::begin(CONVEX), std::end(CONVEX), [&](const char *style) {
-           return strcmp(region->style, style) == 0;
-         });
 }
 
 /** Parts count their surfaces, so that an intersection has all places where two of them only touch,
