@@ -652,6 +652,31 @@ TEST(Surfaces, RimsOfHoles)
             far);
 }
 
+// A crescent between two cylinders that nearly touch over much of their surfaces: its sides, and
+// its edges
+TEST(Surfaces, Crescent)
+{
+  const double r1 = 1.0, r2 = 1.1, apart = 0.12;
+  const double at = (r1 * r1 - r2 * r2 + apart * apart) / (2.0 * apart);
+  const double up = std::sqrt(r1 * r1 - at * at);
+  for (const std::string order : {"a b", "b a"})
+    each_distance("region a cylinder x 0 0 1 INF INF side out\nregion b cylinder x 0.12 0 1.1 INF "
+                  "INF\nregion it intersect 2 " +
+                      order + "\n",
+                  [&](const double *x, double d) {
+                    const double one = std::hypot(x[1], x[2]);
+                    const double two = std::hypot(x[1] - apart, x[2]);
+                    if ((one >= r1 && two <= r2) || one < 1e-3 || two < 1e-3) return;
+                    double exact = std::hypot(x[1] - at, std::fabs(x[2]) - up);
+                    const double y1 = x[1] * r1 / one, z1 = x[2] * r1 / one;
+                    if (one < r1 && std::hypot(y1 - apart, z1) < r2)
+                      exact = std::min(exact, r1 - one);
+                    const double y2 = apart + (x[1] - apart) * r2 / two, z2 = x[2] * r2 / two;
+                    if (two > r2 && std::hypot(y2, z2) > r1) exact = std::min(exact, two - r2);
+                    EXPECT_NEAR(d, exact, 1.0e-5) << order << " " << x[1] << " " << x[2];
+                  });
+}
+
 // Intersections and unions of two to four random regions, many of which are not convex: no place of
 // a fine lattice in the set is nearer than its distance, and that of the place is in all parts
 TEST(Surfaces, OfRandomRegions)
