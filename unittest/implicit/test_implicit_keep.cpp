@@ -177,6 +177,15 @@ TEST(Free, MotionsAreNotMade)
                     "-0.01 0 0\n" +
                     solve(solver));
       EXPECT_NEAR(mean(platens, 1), 0.625, 1e-9);
+      if (!*frame) {    // one that moves, with which contact is decided
+        Scene press(plane("si", "f f", "0 1.2 -2 2", 1, 0.03) +
+                    body("block 0 1.2 0.2 1.05 INF INF", "density 1000 neohookean 1e6 0.3", "0.1") +
+                    "fix one all mpm/boundary xlo slip\nvariable way equal -0.01*step\nregion two "
+                    "plane 1.2 0 0 1 0 0 move v_way NULL NULL\nfix two all mpm/boundary region two "
+                    "slip\n" +
+                    solve(solver));
+        EXPECT_NEAR(mean(press, 1), 0.625, 1e-9);
+      }
 
       Scene bar(space("si", "f f f", "0 0.6 -1 1 -1 1", 1, 0.03) +
                 body("block 0 0.6 0 0.4 0 0.4",

@@ -288,8 +288,10 @@ std::string MPMFreeBodies::find(MPMConstraints &constraints, LatticeRanks &ranks
   return failure;
 }
 
-std::string MPMFreeBodies::find_push(const std::vector<double> &external) const
+/** A body that is pushed is not held: it may go to what bears it. */
+std::string MPMFreeBodies::find_push(const std::vector<double> &external)
 {
+  std::string failure;
   const int w = nodes.width;
   std::vector<double> sums(bodies.size() * (w + 1), 0.0);
   each_owned([&](int64_t n, int k) {
@@ -307,14 +309,16 @@ std::string MPMFreeBodies::find_push(const std::vector<double> &external) const
     const Eigen::VectorXd push = axes * (axes.transpose() * force);
     if (!(push.norm() > CANCELS * sums[k * (w + 1) + w])) continue;
     const double *const x = bodies[k].center, unit = 1.0 / nodes.lmp->force->ftm2v;
-    return fmt::format(
+    failure = fmt::format(
         "the body around ({:.4g}, {:.4g}, {:.4g}) is held by no wall along the force ({:.4g}, "
         "{:.4g}, {:.4g}) "
         "that it bears: hold it by fix mpm/boundary, let its loads cancel, or use euler",
         x[0], x[1], w == 3 ? x[2] : 0.0, unit * push[0], unit * push[1],
         w == 3 ? unit * push[2] : 0.0);
+    bodies[k].translations.resize(bodies[k].translations.rows(), 0);
+    bodies[k].motions = bodies[k].translations;
   }
-  return "";
+  return failure;
 }
 
 /** Takes off motions. power: of the rigid motions of each body, [motion]; by_mass: the changes are

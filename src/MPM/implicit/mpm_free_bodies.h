@@ -29,8 +29,8 @@ class MPMFreeBodies {
   ~MPMFreeBodies();
 
   void clear();
-  /** Finds them, in each step. Returns what is wrong if external forces [node][dim] push one along
-   *  an axis along which it is free, or nothing. Collective. */
+  /** Finds them, in each step and where other nodes touch walls. Returns what is wrong if external
+   *  forces [node][dim] push one along an axis along which it is free, or nothing. Collective. */
   std::string find(MPMConstraints &, MPM_NS::LatticeRanks &, const std::vector<double> &external);
   /** Takes off forces [node][dim], in proportion to masses, what moves bodies along free axes, and
    *  what turns them around free axes if it is round-off. Collective. */
@@ -54,7 +54,7 @@ class MPMFreeBodies {
   void find_free_motions(const std::vector<double> &products);
   void find_masses();
   template <class F> void each_owned(const F &f) const;
-  std::string find_push(const std::vector<double> &external) const;
+  std::string find_push(const std::vector<double> &external);
 };
 
 }    // namespace LAMMPS_NS

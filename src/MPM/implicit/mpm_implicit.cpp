@@ -88,13 +88,7 @@ bool MPMImplicit::begin_step(double dt)
     for (int64_t k = 0; k < nodes.nreals(); k++) external[k] += on_them[k];
   }
   if (stabilize > 0.0) balance.stabilize(stabilize);
-  // elements hold nodes together that have no point in common
-  free_bodies.clear();
-  if (rests && now.failure.empty() && !constraints.has_contacts() && !pressure &&
-      nodes.field.elements.empty()) {
-    const auto pushed = free_bodies.find(constraints, system.lattice_ranks(), balance.external);
-    if (!balance.tangent().has_loads()) now.failure = pushed;    // others are not in these forces
-  }
+  if (now.failure.empty()) now.failure = newton.find_free_bodies();
   return now.failure.empty();
 }
 

@@ -194,6 +194,18 @@ bool MPMNewton::harden_friction(const std::vector<double> &u, Progress &at)
   return true;
 }
 
+std::string MPMNewton::find_free_bodies()
+{
+  free_bodies.clear();
+  // elements hold nodes together that have no point in common
+  if (!options.time.is_static() || pressure || constraints.has_friction() ||
+      constraints.between_bodies() || !nodes.field.elements.empty())
+    return "";
+  const auto pushed = free_bodies.find(constraints, system.lattice_ranks(), balance.external);
+  // a body may go to a wall that bears it; loads are not in these forces
+  return constraints.has_contacts() || balance.tangent().has_loads() ? "" : pushed;
+}
+
 /** Updates the active set where forces are in balance; bodies do so early, as long as it
  *  changes. */
 MPMNewton::Contact MPMNewton::update_contact(std::vector<double> &u, Progress &at)
@@ -206,6 +218,7 @@ MPMNewton::Contact MPMNewton::update_contact(std::vector<double> &u, Progress &a
   if (!constraints.update_active_set(u, converged || stalls ? 0.0 : report.ratio))
     return converged ? BALANCED : UNCHANGED;
   if (!constraints.find()) report.failure = MPMConstraints::CONTRADICTION;
+  find_free_bodies();
   system.use_levels(false);
   at.slow = 0;
   at.last = at.first = 0.0;

@@ -12,6 +12,7 @@
 #include "implicit/mpm_implicit_parts.h"
 #include "solve/krylov.h"
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -35,6 +36,9 @@ class MPMNewton : private MPMImplicitParts {
   /** Start of a step of duration dt. pressure: that of nodes, which is found together with u; null:
    *  none. */
   void begin_step(double dt, MPMCoupledPressure *pressure);
+  /** Finds bodies that walls leave free, in statics. Returns what is wrong, or nothing.
+   *  Collective. */
+  std::string find_free_bodies();
   /** Iterates from u to the balance of forces. Collective. */
   Outcome iterate(std::vector<double> &u, int most_iterations);
   /** The same in as few parts of the step as possible; the report has the result. Collective. */
