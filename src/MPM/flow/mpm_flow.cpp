@@ -567,8 +567,10 @@ void MPMFlow::find_paths()
       for (int d = 0; d < dim; d++) {
         const int64_t lower = (int64_t) cell.near[2 * d] * dim + c,
                       upper = (int64_t) cell.near[2 * d + 1] * dim + c;
-        const bool have_lower = fields.known[lower] > 0.0 || cell.walls >> 2 * d & 1,
-                   have_upper = fields.known[upper] > 0.0 || cell.walls >> (2 * d + 1) & 1;
+        const bool have_lower = fields.known[lower] > 0.0 ||
+            parts.cells.ends_at_wall(cell, c, 2 * d),
+                   have_upper = fields.known[upper] > 0.0 ||
+            parts.cells.ends_at_wall(cell, c, 2 * d + 1);
         if (have_lower && have_upper)
           second += fields.velocity[lower] - 2.0 * fields.velocity[face] + fields.velocity[upper];
       }

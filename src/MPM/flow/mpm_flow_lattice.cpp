@@ -230,15 +230,6 @@ int MPMFlowLattice::rank_around(int number) const
   return comm->coord2proc(x, unused[0], unused[1], unused[2]);
 }
 
-bool MPMFlowLattice::is_inside(int64_t number) const
-{
-  int index[3];
-  grid.node_index(number, index);
-  for (int d = 0; d < lattice.dim; d++)
-    if (!lattice.periodic[d] && (index[d] < 0 || index[d] >= lattice.ncell[d])) return false;
-  return true;
-}
-
 bool MPMFlowLattice::visitors_in_reach() const
 {
   bool in = true;
@@ -304,37 +295,96 @@ void MPMFlowLattice::list_cells()
   }
 }
 
-/** Lists the images of each axis: of all cells that exist along the other axes, including those
- *  beyond walls. */
+/* ----------------------------------------------------------------------
+   Images beyond several walls have the rules of all of these at once, so that no axis comes first.
+   Behind a wall without slip the velocity along it is odd about that of the wall also for faces that
+   are in or beyond another wall: a lid has its velocity up to the edge. Beyond two walls without
+   slip, which may have different velocities, the velocity along both is the mean of the images of
+   images in either order, and so that of the source.
+------------------------------------------------------------------------- */
+
 void MPMFlowLattice::list_images()
 {
   images.clear();
-  at_walls.clear();
+  face_images.clear();
+  path_images.clear();
+  for (int slot = 0; slot < (int) grid.blocks.size(); slot++)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      int index[3];
+      grid.node_index(grid.blocks[slot], n, index);
+      bool is_near = true;
+      for (int d = 0; d < lattice.dim; d++)
+        is_near = is_near &&
+            (lattice.periodic[d] || (index[d] >= -1 && index[d] <= lattice.ncell[d] + 1));
+      if (!is_near) continue;
+      const int number = slot * NODES_PER_BLOCK + n;
+      if (beyond(index)) add_image(number, index);
+      for (int c = 0; c < lattice.dim; c++) add_face_image(number, index, c);
+    }
+}
+
+/** The walls beyond which a cell is: bit 2 d + s for the lower (s = 0) or upper one of axis d. */
+int MPMFlowLattice::beyond(const int index[3]) const
+{
+  int all = 0;
+  for (int d = 0; d < lattice.dim; d++)
+    if (!lattice.periodic[d] && (index[d] < 0 || index[d] >= lattice.ncell[d]))
+      all |= (index[d] < 0 ? 1 : 2) << 2 * d;
+  return all;
+}
+
+/** Cell within walls whose image along an axis of n cells is cell i. */
+static int source_of_cell(int i, int n)
+{
+  return i < 0 ? std::min(-1 - i, n - 1) : i < n ? i : std::max(0, 2 * n - 1 - i);
+}
+
+void MPMFlowLattice::add_image(int number, const int index[3])
+{
+  Image image = {number, -1, beyond(index), {-1, -1, -1}};
+  int source[3] = {index[0], index[1], index[2]};
+  for (int d = 0; d < lattice.dim; d++)
+    if (image.walls >> 2 * d & 3) source[d] = source_of_cell(index[d], lattice.ncell[d]);
+  image.source = (int) grid.locate(source);
+  if (image.source < 0) return;
   for (int d = 0; d < lattice.dim; d++) {
-    if (lattice.periodic[d]) continue;
-    for (int slot = 0; slot < (int) grid.blocks.size(); slot++)
-      for (int n = 0; n < NODES_PER_BLOCK; n++) {
-        int index[3];
-        grid.node_index(grid.blocks[slot], n, index);
-        const int i = index[d], last = lattice.ncell[d], number = slot * NODES_PER_BLOCK + n;
-        if (i == 0 || i == last) {
-          int next[3] = {index[0], index[1], index[2]};
-          next[d] += i == 0 ? 1 : -1;
-          at_walls.push_back({number, d, i == 0 ? 0 : 1, (int) grid.locate(next)});
-        }
-        if (i < -1 || i > last + 1 || (i >= 0 && i < last)) continue;
-        const int side = i < 0 ? 0 : 1, wall = side ? last : 0;
-        index[d] = std::max(0, std::min(2 * wall - i, last));
-        const int source_face = (int) grid.locate(index);
-        index[d] = std::max(0, std::min(2 * wall - 1 - i, last - 1));
-        const int source_cell = (int) grid.locate(index);
-        index[d] += side ? -1 : 1;
-        const int source_behind = (int) grid.locate(index);
-        if (source_face >= 0 && source_cell >= 0)
-          images.push_back({number, source_face, source_cell,
-                            source_behind < 0 ? source_cell : source_behind, d, side});
-      }
+    int next[3] = {source[0], source[1], source[2]};
+    next[d] += image.walls >> 2 * d & 1 ? 1 : -1;
+    const auto behind = (int) grid.locate(next);
+    image.behind[d] = behind < 0 ? image.source : behind;
   }
+  images.push_back(image);
+}
+
+void MPMFlowLattice::add_face_image(int number, const int index[3], int axis)
+{
+  const int i = index[axis], last = lattice.ncell[axis], all = beyond(index);
+  const bool has_wall = !lattice.periodic[axis], in_wall = has_wall && (i == 0 || i == last);
+  if (!in_wall && !all) return;
+  int source[3] = {index[0], index[1], index[2]}, nstick = 0;
+  double factor = 1.0, shift = 0.0;
+  for (int d = 0; d < lattice.dim; d++) {
+    if (d == axis || !(all >> 2 * d & 3)) continue;
+    source[d] = source_of_cell(index[d], lattice.ncell[d]);
+    const auto &wall = walls[d][all >> 2 * d & 1 ? 0 : 1];
+    if (!wall.sticks) continue;
+    factor = -factor;
+    shift = ++nstick == 1 ? 2.0 * wall.v[axis] : 0.0;
+  }
+  const auto add = [&](std::vector<FaceImage> &faces, double normal) {
+    const auto from = (int) grid.locate(source);
+    const bool none = from < 0 || (has_wall && source[axis] % last == 0);
+    if (none) normal = 0.0;
+    if (from >= 0 || in_wall)
+      faces.push_back({number, axis, from < 0 ? number : from, normal * factor, shift, normal});
+  };
+  const auto &wall = walls[axis][i > 0 ? 1 : 0];
+  if (has_wall && i < 0) source[axis] = std::min(-i, last);
+  if (has_wall && i > last) source[axis] = std::max(2 * last - i, 0);
+  const bool outside = source[axis] != i;
+  add(face_images, outside ? -1.0 : 1.0);
+  if (in_wall && wall.sticks) source[axis] += i == 0 ? 1 : -1;
+  add(path_images, !wall.sticks && outside ? -1.0 : in_wall ? -1.0 / 3.0 : 1.0);
 }
 
 /* ---------------------------------------------------------------------- */
@@ -342,24 +392,24 @@ void MPMFlowLattice::list_images()
 void MPMFlowLattice::sum(double *values, int width, bool moving) const
 {
   const int dim = lattice.dim;
-  for (const auto &image : images) {
-    double *const from = values + (int64_t) image.number * width;
-    const auto &wall = walls[image.axis][image.side];
-    for (int k = 0; k < width; k++) {
-      const bool normal = k % dim == image.axis && k < 3 * dim;
-      double *const to =
-          values + (int64_t) (normal ? image.source_face : image.source_cell) * width;
-      if (to == from) continue;    // the face in the wall itself
-      if (k < dim && normal)
-        to[k] -= from[k];
-      else if (k < dim && wall.sticks)
-        to[k] += (moving ? 2.0 * wall.v[k] * from[dim + k] : 0.0) - from[k];
-      else
-        to[k] += from[k];
+  for (const auto &image : face_images) {
+    if (image.source == image.number) continue;    // a face in a wall
+    double *const from = values + (int64_t) image.number * width,
+                  *const to = values + (int64_t) image.source * width;
+    const int c = image.axis;
+    if (moving) from[c] -= image.shift * from[dim + c];
+    from[c] *= image.factor;
+    for (int k = c; k < std::min(3 * dim, width); k += dim) {
+      to[k] += from[k];
+      from[k] = 0.0;
     }
-    for (int k = 0; k < width; k++)
-      if (k % dim != image.axis || k >= 3 * dim || image.source_face != image.number) from[k] = 0.0;
   }
+  for (const auto &image : images)
+    for (int k = 3 * dim; k < width; k++) {
+      double *const from = values + (int64_t) image.number * width + k;
+      values[(int64_t) image.source * width + k] += *from;
+      *from = 0.0;
+    }
   sum_freely(values, width);
 }
 
@@ -396,70 +446,48 @@ void MPMFlowLattice::keep_owned(double *values, int width) const
   }
 }
 
-void MPMFlowLattice::reflect_velocities(double *values, bool moving) const
+void MPMFlowLattice::reflect(double *values, const std::vector<FaceImage> &faces) const
 {
   const int dim = lattice.dim;
-  for (const auto &at : at_walls) values[(int64_t) at.number * dim + at.axis] = 0.0;
-  for (auto image = images.rbegin(); image != images.rend(); ++image) {
-    double *const to = values + (int64_t) image->number * dim;
-    const auto &wall = walls[image->axis][image->side];
-    for (int c = 0; c < dim; c++) {
-      const bool normal = c == image->axis;
-      const double from =
-          values[(int64_t) (normal ? image->source_face : image->source_cell) * dim + c];
-      if (normal)
-        to[c] = image->source_face == image->number ? 0.0 : -from;
-      else
-        to[c] = wall.sticks && moving ? 2.0 * wall.v[c] - from : from;
-    }
+  for (const auto &image : faces)
+    values[(int64_t) image.number * dim + image.axis] =
+        image.factor * values[(int64_t) image.source * dim + image.axis] + image.shift;
+}
+
+void MPMFlowLattice::reflect_velocities(double *values, bool sticks) const
+{
+  if (sticks) {
+    reflect(values, face_images);
+    return;
   }
+  const int dim = lattice.dim;
+  for (const auto &image : face_images)
+    values[(int64_t) image.number * dim + image.axis] =
+        image.slip * values[(int64_t) image.source * dim + image.axis];
 }
 
 void MPMFlowLattice::reflect_paths(double *values) const
 {
-  const int dim = lattice.dim;
-  for (const auto &at : at_walls) {
-    const bool even = walls[at.axis][at.side].sticks && at.inner >= 0;
-    values[(int64_t) at.number * dim + at.axis] =
-        even ? -values[(int64_t) at.inner * dim + at.axis] / 3.0 : 0.0;
-  }
-  for (auto image = images.rbegin(); image != images.rend(); ++image) {
-    double *const to = values + (int64_t) image->number * dim;
-    const auto &wall = walls[image->axis][image->side];
-    for (int c = 0; c < dim; c++) {
-      const bool normal = c == image->axis;
-      if (normal && image->source_face == image->number) continue;
-      const double from =
-          values[(int64_t) (normal ? image->source_face : image->source_cell) * dim + c];
-      if (normal)
-        to[c] = wall.sticks ? from : -from;
-      else
-        to[c] = wall.sticks ? 2.0 * wall.v[c] - from : from;
-    }
-  }
+  reflect(values, path_images);
 }
 
 void MPMFlowLattice::reflect_faces(double *values, int width) const
 {
-  for (auto image = images.rbegin(); image != images.rend(); ++image)
-    for (int k = 0; k < width; k++) {
-      const bool normal = k % lattice.dim == image->axis;
-      values[(int64_t) image->number * width + k] =
-          values[(int64_t) (normal ? image->source_face : image->source_cell) * width + k];
-    }
+  for (const auto &image : face_images)
+    for (int k = image.axis; k < width; k += lattice.dim)
+      values[(int64_t) image.number * width + k] = values[(int64_t) image.source * width + k];
 }
 
 void MPMFlowLattice::reflect_cells(double *values) const
 {
-  for (auto image = images.rbegin(); image != images.rend(); ++image)
-    values[image->number] = values[image->source_cell];
+  for (const auto &image : images) values[image.number] = values[image.source];
 }
 
 double MPMFlowLattice::memory_usage() const
 {
   return grid.memory_usage() + halo.memory_usage() +
       bytes_of(points, runs, kept, cells, around, ranges, visitor_ranges, visitors, images,
-               at_walls);
+               face_images, path_images);
 }
 
 /* ----------------------------------------------------------------------
@@ -473,7 +501,9 @@ void MPMFlowAir::extend(std::vector<double> &velocity, std::vector<double> &know
   unknown.clear();
   for (int k = 0; k < (int) cells.cells.size(); k++)
     for (int c = 0; c < dim; c++)
-      if (!(known[(int64_t) cells.cells[k].number * dim + c] > 0.0)) unknown.push_back({k, c});
+      if (!(known[(int64_t) cells.cells[k].number * dim + c] > 0.0) &&
+          !(cells.cells[k].walls >> 2 * c & 1))
+        unknown.push_back({k, c});
   all.resize(velocity.size() * 2);
   for (int64_t k = 0; k < cells.size(); k++)
     for (int c = 0; c < dim; c++) {
@@ -489,7 +519,7 @@ void MPMFlowAir::extend(std::vector<double> &velocity, std::vector<double> &know
       double sum = 0.0, n = 0.0;
       for (int s = 0; s < 2 * dim; s++) {
         // nothing is beyond a wall, and the face in the wall itself does not count
-        if (cell.walls >> s & 1) continue;
+        if (cells.ends_at_wall(cell, face.axis, s)) continue;
         const double *const other = &all[(int64_t) cell.near[s] * width + face.axis];
         sum += other[dim] * other[0];
         n += other[dim];

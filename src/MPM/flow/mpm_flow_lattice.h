@@ -115,8 +115,8 @@ class MPMFlowLattice : protected Pointers {
   MPMHalo &halo_of_cells() const { return halo; }
   /** Sets the values [cell][width] of all cells to zero that are not in the list of owned cells. */
   void keep_owned(double *values, int width) const;
-  /** Sets velocities [cell][dim] at walls and beyond; moving false: walls are at rest. */
-  void reflect_velocities(double *values, bool moving = true) const;
+  /** Sets velocities [cell][dim] at walls and beyond; sticks false: as if all walls had slip. */
+  void reflect_velocities(double *values, bool sticks = true) const;
   /** Sets the velocities [cell][dim] with which points move, at walls and beyond. Normal to a wall
    *  without slip, the velocity grows with the square of the distance, so that it is even, and the
    *  face in the wall has the value for which the interpolated velocity is zero there. */
@@ -126,26 +126,39 @@ class MPMFlowLattice : protected Pointers {
   void reflect_faces(double *values, int width) const;
   /** Sets values in the middle of images of cells to those of the cells. */
   void reflect_cells(double *values) const;
-  /** Sets values in the middle of images of cells to f(cell, axis, side, value of the cell). */
+  /** Sets values in the middle of images of cells to f(cell, axis, side). Changes beyond several
+   *  walls add up. */
   template <class F> void fill_images(double *values, const F &f) const
   {
-    for (auto image = images.rbegin(); image != images.rend(); ++image)
-      values[image->number] =
-          f(image->source_cell, image->axis, image->side, values[image->source_cell]);
+    for (const auto &image : images) {
+      const double here = values[image.source];
+      double change = 0.0;
+      for (int s = 0; s < 2 * lattice.dim; s++)
+        if (image.walls >> s & 1) change += f(image.source, s / 2, s % 2) - here;
+      values[image.number] = here + change;
+    }
   }
-  /** Is a cell within walls? */
-  bool is_inside(int64_t number) const;
+  /** Is the next face that is normal to an axis, beyond side s of a cell (as in Cell::near), in or
+   *  behind a wall? */
+  bool ends_at_wall(const Cell &cell, int axis, int s) const
+  {
+    return cell.walls >> s & 1 ||
+        (s == 2 * axis && !lattice.periodic[axis] && cell.index[axis] == 1);
+  }
   /** Number of a cell, or of the cell of which it is a periodic image; -1: this rank does not have
    *  it. */
   int canonical(const int index[3]) const;
-  /** Sets values in the middle of images of cells by linear extrapolation if inside(number) is true
-   *  for the last two cells, else to those of the cells. */
+  /** Sets values in the middle of images of cells by linear extrapolation along the axes for whose
+   *  last two cells inside(number) is true, else to those of the cells. */
   template <class F> void extrapolate_cells(double *values, const F &inside) const
   {
-    for (auto image = images.rbegin(); image != images.rend(); ++image) {
-      const int one = image->source_cell, next = image->source_behind;
-      values[image->number] = inside(one) && inside(next) ? 2.0 * values[one] - values[next]
-                                                          : values[one];
+    for (const auto &image : images) {
+      const double here = values[image.source];
+      double change = 0.0;
+      for (int d = 0; d < lattice.dim; d++)
+        if (image.walls >> 2 * d & 3 && inside(image.source) && inside(image.behind[d]))
+          change += here - values[image.behind[d]];
+      values[image.number] = here + change;
     }
   }
 
@@ -161,10 +174,16 @@ class MPMFlowLattice : protected Pointers {
     int low[3], high[3];
   };
   struct Image {
-    // source_face, source_cell: originals of the normal component, and of all other values
-    int number, source_face, source_cell;
-    int source_behind;    // the cell behind source_cell
-    int axis, side;
+    int number, source;
+    int walls;        // bit 2 d + s: the image is beyond the lower (s = 0) or upper wall of axis d
+    int behind[3];    // the cell behind source, along each of these axes
+  };
+  // a face in or beyond a wall: its velocity is factor times that of the source, plus shift, which
+  // is due to the motion of a wall; with slip at all walls it is slip times that of the source
+  struct FaceImage {
+    int number, axis;
+    int source;
+    double factor, shift, slip;
   };
   const int groupbit;
   int sorts = 0;    // how often the order was found since data was moved
@@ -172,12 +191,8 @@ class MPMFlowLattice : protected Pointers {
   mutable std::vector<double> kept;
   std::vector<Range> ranges;            // of bases, by slot
   std::vector<Range> visitor_ranges;    // their bases when cells were found
-  std::vector<Image> images;            // by axis
-  struct AtWall {
-    int number, axis, side;
-    int inner;    // the next cell within; -1: there is none
-  };
-  std::vector<AtWall> at_walls;    // cells whose lower face is in a wall
+  std::vector<Image> images;
+  std::vector<FaceImage> face_images, path_images;    // for velocities and for paths
 
   std::vector<int> borrowed;    // cells of other ranks that this rank has, too
 
@@ -186,7 +201,12 @@ class MPMFlowLattice : protected Pointers {
   int rank_around(int number) const;
   void list_cells();
   void list_images();
+  int beyond(const int index[3]) const;
+  void add_image(int number, const int index[3]);
+  void add_face_image(int number, const int index[3], int axis);
+  void reflect(double *values, const std::vector<FaceImage> &faces) const;
 };
+
 /** Extends the velocities of the water to faces in the air that points near the surface reach:
  *  layer by layer, as means of the known velocities around. */
 class MPMFlowAir {

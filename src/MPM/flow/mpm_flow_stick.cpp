@@ -188,7 +188,7 @@ void MPMFlowStick::hold(std::vector<double> &velocity)
         for (int s = 0; s < 2 * dim; s++) {
           const int64_t next = (int64_t) cell.near[s] * dim + c;
           const double out = level[next] - level[face];
-          if (cell.walls >> s & 1 || !(known[next] > 0.0) || out < OUTWARDS) continue;
+          if (cells.ends_at_wall(cell, c, s) || !(known[next] > 0.0) || out < OUTWARDS) continue;
           const double from =
               std::copysign(std::max(NEAREST_HELD, std::fabs(level[next])), level[next]);
           const double ratio = std::max(-1.0, std::min(level[face] / from, 1.5));

@@ -47,15 +47,22 @@ void MPMFlowTension::find_smooth(const std::vector<double> &share)
   for (const auto &cell : cells.cells)
     smooth[cell.number] = water.is_deep(cell) ? 1.0 : std::min(1.0, share[cell.number]);
   wetting.complete(smooth, true);
-  for (int pass = 0; pass < PASSES; pass++)
-    for (int d = 0; d < cells.lattice.dim; d++) {
-      other.assign(cells.size(), 0.0);
-      for (const auto &cell : cells.cells)
-        other[cell.number] = 0.5 * smooth[cell.number] +
-            0.25 * (smooth[cell.near[2 * d]] + smooth[cell.near[2 * d + 1]]);
-      wetting.complete(other, true);
-      smooth.swap(other);
-    }
+  // along all axes at once: values behind walls depend on those at walls, so that one axis after
+  // the other would not be the same in another order
+  const int dim = cells.lattice.dim, naround = dim == 2 ? 9 : 27;
+  double weights[27];
+  for (int j = 0; j < naround; j++) {
+    weights[j] = 1.0;
+    for (int d = 0, rest = j; d < dim; d++, rest /= 3) weights[j] *= rest % 3 == 1 ? 0.5 : 0.25;
+  }
+  for (int pass = 0; pass < PASSES; pass++) {
+    other.assign(cells.size(), 0.0);
+    const int *at = cells.around.data();
+    for (const auto &cell : cells.cells)
+      for (int j = 0; j < naround; j++) other[cell.number] += weights[j] * smooth[*at++];
+    wetting.complete(other, true);
+    smooth.swap(other);
+  }
 }
 
 /** div n at the middles of cells, in 1/spacing; zero where there is no normal. */
@@ -297,7 +304,7 @@ void MPMFlowWetting::fill_walls(std::vector<double> &values, bool find)
       cells.publish(next.data(), dim);
       layer.swap(next);
     }
-  cells.fill_images(values.data(), [this, dim](int64_t of, int axis, int side, double value) {
-    return cells.is_inside(of) ? layers[side][of * dim + axis] : value;
+  cells.fill_images(values.data(), [this, dim](int64_t of, int axis, int side) {
+    return layers[side][of * dim + axis];
   });
 }
