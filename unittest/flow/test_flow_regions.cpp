@@ -203,6 +203,29 @@ TEST(Regions, RanksAndRestart)
   }
 }
 
+// The energy that a region gives does not count as that of numerical errors at the start of a run,
+// either, when it has not moved in it so far. Points would keep less of their velocities
+SERIAL_TEST(Regions, GiveEnergyInRunsOfParts)
+{
+  const std::string told = "numerical errors have added",
+                    fixes = "variable up equal -0.2*time\n"
+                            "region ball sphere 0.5 0.4 0 0.12 move NULL v_up NULL\n"
+                            "fix w all mpm/incompressible 0.04 1000 region ball\n"
+                            "fix g all gravity 9.81 vector 0 -1 0\ntimestep 0.005\n",
+                    scene = plane("si", "f f", "0 1 0 1", 1, 0.02) +
+      "region hole sphere 0.5 0.4 0 0.12 side out\nregion low block INF INF INF 0.6 INF INF\n"
+      "region water intersect 2 low hole\ncreate_points 1 region water spacing 0.02\n" +
+      fixes;
+  const ScratchFile file("parts");
+  const auto first = scene + "run 10\n";
+  Scene whole(scene + "run 20\n"), parts(first + "run 10\n");
+  EXPECT_LT(difference(whole.gather(), parts.gather()), 1e-11);
+  EXPECT_EQ(times_said(first + "write_restart " + file.name + "\nrun 10\n", told), 0);
+  EXPECT_EQ(
+      times_said("read_restart " + file.name + "\nneighbor 0.02 bin\n" + fixes + "run 10\n", told),
+      0);
+}
+
 // A container that is moved pushes on its water with the force that accelerates it, wherever walls
 // are in their cells: full, and with an inclined surface
 SERIAL_TEST(Regions, MovedTank)

@@ -51,6 +51,10 @@ static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
 // above which this is so, with solids, too, where energies of waves of 8 cells vary by 12 %, and
 // which are worth a warning
 static constexpr double GAIN = 0.03, GAIN_OF_SOLIDS = 0.15, MUCH_GAIN = 0.1;
+// energy that is in play at least, over the work of all forces along a spacing, or the tolerance of
+// the pressure, which leaves about this share of forces: of velocities of 0.0014 (g h)^(1/2), and of
+// waves as high as 0.01 of a spacing. Points of a fluid at rest creep by less
+static constexpr double IN_PLAY = 1.0e-6;
 // passes that fit the gradients of velocities with which points begin, at most, and their change of
 // velocities of faces, relative to the largest one, that ends them: a pass leaves up to 0.58 of
 // what is missing, and 0.9 at walls, if it takes all of the gradients that it finds, and less if it
@@ -297,7 +301,7 @@ void MPMFlow::find_cells()
   const auto last =
       sum_last_step(parts.cells.valid && (!parts.grains || parts.cells.visitors_in_reach()));
   parts.cells.valid = last[0] == 0.0;
-  if (!is_new) energy.look(last[4], last[5], atom->natoms, only_forces_work(parts, options));
+  if (!is_new) energy.look(last[4], last[5], last[6], atom->natoms);
   find_share(last[1], last[2]);
   if (parts.grains && !parts.cells.valid) parts.grains->list();
   parts.cells.find_cells();
@@ -333,7 +337,7 @@ void MPMFlow::find_wet_cells()
 
 void MPMFlow::faces_to_points()
 {
-  double shift_energy[2] = {0.0, 0.0}, step_energy[2] = {0.0, 0.0};
+  double shift_energy[2] = {0.0, 0.0}, step_energy[3] = {0.0, 0.0, 0.0};
   const MPMFlowUpdate update = {
       options.flip,
       !now.keeps   ? nullptr
@@ -358,6 +362,8 @@ void MPMFlow::faces_to_points()
                                      update, fields.pressures.data(), MPMPoints::get(atom)->tau);
   energy.kinetic = 0.5 * force->mvv2e * step_energy[0];
   energy.work += step_energy[1];
+  energy.in_play = std::max(IN_PLAY, options.tolerance) * step_energy[2] * options.h;
+  energy.counts = only_forces_work(parts, options);
   if (parts.solids) energy.work -= parts.solids->take_work();
   spreading_energy += force->mvv2e * shift_energy[0] - shift_energy[1];
   is_new = begins = false;
@@ -365,14 +371,14 @@ void MPMFlow::faces_to_points()
 }
 
 /** Sums over all ranks: number of ranks whose cells are not those of their points,
- *  MPMFlowUpdate::squares of the last step, the energy of spreading, and kinetic energy and work of
- *  MPMFlowEnergy. */
-std::array<double, 6> MPMFlow::sum_last_step(bool valid) const
+ *  MPMFlowUpdate::squares of the last step, the energy of spreading, and those of MPMFlowEnergy. */
+std::array<double, 7> MPMFlow::sum_last_step(bool valid) const
 {
-  const std::array<double, 6> mine = {valid ? 0.0 : 1.0, unseen[0],      unseen[1],
-                                      spreading_energy,  energy.kinetic, energy.work};
-  std::array<double, 6> all;
-  MPI_Allreduce(mine.data(), all.data(), 6, MPI_DOUBLE, MPI_SUM, world);
+  const std::array<double, 7> mine = {valid ? 0.0 : 1.0, unseen[0],      unseen[1],
+                                      spreading_energy,  energy.kinetic, energy.work,
+                                      energy.in_play};
+  std::array<double, 7> all;
+  MPI_Allreduce(mine.data(), all.data(), 7, MPI_DOUBLE, MPI_SUM, world);
   return all;
 }
 
@@ -719,7 +725,7 @@ std::vector<double> MPMFlow::restart_data() const
                                is_new ? sum_before : sum_over_points(atom->v, size),
                                is_new ? force_before : sum_over_points(atom->f, size),
                                (double) was_leapfrog};
-  const auto energies = energy.state(last[4], last[5]);
+  const auto energies = energy.state(last[4], last[5], last[6]);
   state.insert(state.end(), energies.begin(), energies.end());
   if (parts.regions) {
     const auto motion = parts.regions->motion();

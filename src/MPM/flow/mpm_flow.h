@@ -126,7 +126,7 @@ class MPMFlow : protected Pointers {
   void find_paths();
   void find_shift();
   void faces_to_points();
-  std::array<double, 6> sum_last_step(bool valid) const;
+  std::array<double, 7> sum_last_step(bool valid) const;
   bool gains() const;
   void find_share(double unseen, double bend);
   void report_gain();

@@ -21,7 +21,7 @@ void MPMFlowEnergy::begin()
   *this = MPMFlowEnergy();
 }
 
-void MPMFlowEnergy::look(double all_kinetic, double all_work, bigint n, bool counts)
+void MPMFlowEnergy::look(double all_kinetic, double all_work, double all_in_play, bigint n)
 {
   const double now = all_kinetic - all_work;
   if (npoints < 0)
@@ -31,7 +31,7 @@ void MPMFlowEnergy::look(double all_kinetic, double all_work, bigint n, bool cou
   npoints = n;
   last = now;
   least = std::min(least, now);
-  most = std::max(most, all_kinetic);
+  most = std::max({most, all_kinetic, all_in_play});
   largest = std::max(largest, gain());
 }
 
@@ -42,10 +42,10 @@ std::array<double, 2> MPMFlowEnergy::largest_gain()
   return {found, most};
 }
 
-std::array<double, MPMFlowEnergy::NREAL> MPMFlowEnergy::state(double all_kinetic,
-                                                              double all_work) const
+std::array<double, MPMFlowEnergy::NREAL> MPMFlowEnergy::state(double all_kinetic, double all_work,
+                                                              double all_in_play) const
 {
-  return {all_kinetic, all_work, last, least, most, (double) npoints};
+  return {all_kinetic, all_work, last, least, most, (double) npoints, all_in_play, (double) counts};
 }
 
 void MPMFlowEnergy::set_state(const double *from, bool is_first)
@@ -56,6 +56,8 @@ void MPMFlowEnergy::set_state(const double *from, bool is_first)
   least = from[3];
   most = from[4];
   npoints = (bigint) from[5];
+  in_play = is_first ? from[6] : 0.0;
+  counts = from[7] > 0.0;
 }
 
 bool LAMMPS_NS::only_forces_work(const MPMFlowParts &parts, const MPMIncompressibleOptions &options)

@@ -21,29 +21,32 @@ struct MPMIncompressibleOptions;
  *  lowest value, so that losses do not hide what is added later. */
 class MPMFlowEnergy {
  public:
-  /** Sums over the points of this rank: kinetic energy after the last step, work of forces so far;
-   *  energies. */
-  double kinetic = 0.0, work = 0.0;
+  /** Sums over the points of this rank: kinetic energy after the last step, work of forces so far,
+   *  and the energy in play at least, with forces of the last step; energies. */
+  double kinetic = 0.0, work = 0.0, in_play = 0.0;
+  /** only_forces_work() in the last step. */
+  bool counts = false;
 
   /** Begins anew: points have other velocities. */
   void begin();
-  /** Start of a step, with sums of the above over all ranks. counts: only_forces_work() in the step
-   *  before. npoints: if others come or go with their energy, the step does not count, either. */
-  void look(double all_kinetic, double all_work, bigint npoints, bool counts);
-  /** Energy that work does not explain now, over the largest kinetic energy so far. */
+  /** Start of a step, with sums of the above over all ranks. npoints: if others come or go with
+   *  their energy, the step before does not count, either. */
+  void look(double all_kinetic, double all_work, double all_in_play, bigint npoints);
+  /** Energy that work does not explain now, over the largest kinetic energy so far, or what is in
+   *  play at least: a fluid at rest has the kinetic energy of round-off. */
   double gain() const { return most > 0.0 ? (last - least) / most : 0.0; }
   /** The largest gain() since the last call of this function, and the kinetic energy. */
   std::array<double, 2> largest_gain();
 
-  static constexpr int NREAL = 6;
+  static constexpr int NREAL = 8;
   /** State for restart files, with sums over all ranks. */
-  std::array<double, NREAL> state(double all_kinetic, double all_work) const;
+  std::array<double, NREAL> state(double all_kinetic, double all_work, double all_in_play) const;
   /** Takes this state; is_first: on the first rank. */
   void set_state(const double *from, bool is_first);
 
  private:
   double last = 0.0;                 // kinetic energy minus work, up to a constant
-  double least = 0.0, most = 0.0;    // lowest of these, largest kinetic energy
+  double least = 0.0, most = 0.0;    // lowest of these, largest kinetic energy or in_play
   double largest = 0.0;              // gain
   bigint npoints = -1;               // -1: no step so far
 };

@@ -446,7 +446,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
   bool all_in_reach = true;
-  double squares[2] = {0.0, 0.0}, energy[2] = {0.0, 0.0};
+  double squares[2] = {0.0, 0.0}, energy[3] = {0.0, 0.0, 0.0};
   // and, if there are such: those before, those after an impulse, the shift, more
   const double *fields[5] = {velocity};
   const int at_old = 1, at_struck = update.old ? 2 : 1, at_shift = at_struck + !!update.struck,
@@ -547,17 +547,20 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         update.regions->keep_outside(x, v);
         places.keep_inside(x);
       }
+      double force_square = 0.0;
       for (int c = 0; c < dim; c++) {
         v[c] += half_kick[c];
         energy[0] += points.mass[i] * v[c] * v[c];
         energy[1] += points.f[i][c] * (x[c] - from[c]);
+        force_square += points.f[i][c] * points.f[i][c];
       }
+      energy[2] += std::sqrt(force_square);
       places.find_base(x, base);
       all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
     }
   }
   if (update.squares) std::copy_n(squares, 2, update.squares);
-  if (update.energy) std::copy_n(energy, 2, update.energy);
+  if (update.energy) std::copy_n(energy, 3, update.energy);
   return all_in_reach;
 }
 
