@@ -566,7 +566,12 @@ SERIAL_TEST(Liquids, BadInput)
        {"region b sphere 0.5 0.5 0 0.001\n" + fix + "liquid all 800 1 region b",
         "use the keyword stick"},
        {fix + "liquid all 800 20000", "too large for the viscosity, which allows 7.5e-05"},
-       {fix + "liquid all 800 tension 1", "leave one of them out"}},
+       {fix + "liquid all 800 tension 1", "leave one of them out"},
+       // points keep the mass that they have
+       {"group few id <= 30\n" + fix + "liquid few 800\nrun 0\nunfix w\n" + fix + "liquid few 900",
+        "30 points have another mass than density 900 of liquid few"},
+       {"group few id <= 30\n" + fix + "liquid few 800\nrun 0\nunfix w\n" + fix,
+        "30 points have another mass than density 1000 times"}},
       "timestep 0.001\nrun 1\n");
 
   // a group that is empty, as its points were made later, is told of once; one that has some is not

@@ -57,8 +57,9 @@ void MPMFlowChecks::check_box() const
 
 void MPMFlowChecks::check_points()
 {
-  bigint mine[3] = {0, 0, 0},
-         all[3];    // points, those of another density, and those larger than a cell
+  bigint mine[2] = {0, 0}, all[2];    // points, and those larger than a cell
+  // those of another density: of none of the liquids, each of them, and solids
+  std::vector<bigint> others(options.liquids.size() + 2, 0);
   if (parts.solids) check_solids();
   check_laws();
   check_loads();
@@ -67,30 +68,47 @@ void MPMFlowChecks::check_points()
     const double mass = density(i) * atom->vfrac[i];
     if (!(atom->rmass[i] > 0.0)) atom->rmass[i] = mass;
     mine[0]++;
-    if (std::fabs(atom->rmass[i] / mass - 1.0) > MPMFlowLiquids::SAME_DENSITY) mine[1]++;
-    if (atom->vfrac[i] > LARGEST_POINT * parts.cells.lattice.cell_volume()) mine[2]++;
+    if (std::fabs(atom->rmass[i] / mass - 1.0) > MPMFlowLiquids::SAME_DENSITY)
+      (is_solid(i) ? others.back() : others[liquids.liquid(atom->mask[i]) + 1])++;
+    if (atom->vfrac[i] > LARGEST_POINT * parts.cells.lattice.cell_volume()) mine[1]++;
     for (int d = 0; d < domain->dimension; d++)
       if (!std::isfinite(atom->v[i][d]) || !std::isfinite(atom->x[i][d]))
         error->one(FLERR, Error::NOLASTLINE,
                    "Fix {}: point {} has a position or velocity that is not a number", STYLE,
                    atom->tag[i]);
   }
-  MPI_Allreduce(mine, all, 3, MPI_LMP_BIGINT, MPI_SUM, world);
+  MPI_Allreduce(mine, all, 2, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all[0] == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "{} has no material points in its group: make some with create_points", who);
-  if (all[1])
-    error->all(FLERR, Error::NOLASTLINE,
-               "{}: {} points have another mass than density {} times their volume; there is one "
-               "density but for points of keywords liquid and solid",
-               who, all[1], options.density);
-  if (all[2] && comm->me == 0 && !warned_of_size)
+  check_masses(others);
+  if (all[1] && comm->me == 0 && !warned_of_size)
     error->warning(FLERR,
                    "{}: {} points are larger than a cell, and leave others empty when they move: "
                    "use points with a spacing of at most {:.6g}, better {:.6g}",
-                   who, all[2], options.h, 0.5 * options.h);
-  warned_of_size = all[2] > 0;
+                   who, all[1], options.h, 0.5 * options.h);
+  warned_of_size = all[1] > 0;
   check_liquids();
+}
+
+/** mine: number of points of this rank whose mass does not fit, see check_points(). */
+void MPMFlowChecks::check_masses(const std::vector<bigint> &mine) const
+{
+  std::vector<bigint> all(mine.size());
+  MPI_Allreduce(mine.data(), all.data(), (int) mine.size(), MPI_LMP_BIGINT, MPI_SUM, world);
+  const std::size_t nliquid = options.liquids.size();
+  for (std::size_t k = 0; k < all.size(); k++)
+    if (all[k])
+      error->all(
+          FLERR, Error::NOLASTLINE,
+          "{}: {} points have another mass than {} times their volume: points keep the mass that "
+          "they have; give the density of that, by keyword liquid or solid for a group, or "
+          "set their mass",
+          who, all[k],
+          k == 0            ? fmt::format("density {}", options.density)
+              : k > nliquid ? "the density of their solid"
+                            : fmt::format("density {} of liquid {}", options.liquids[k - 1].density,
+                                          options.liquids[k - 1].group));
 }
 
 /** Checks the groups of liquids. They have the points that there were at the time of their command;
@@ -170,8 +188,12 @@ void MPMFlowChecks::check_loads()
 
 double MPMFlowChecks::density(int i) const
 {
-  return parts.solids && parts.solids->holds(i) ? parts.solids->density_of(i)
-                                                : liquids.density(atom->mask[i]);
+  return is_solid(i) ? parts.solids->density_of(i) : liquids.density(atom->mask[i]);
+}
+
+bool MPMFlowChecks::is_solid(int i) const
+{
+  return parts.solids && parts.solids->holds(i);
 }
 
 void MPMFlowChecks::check_gas()

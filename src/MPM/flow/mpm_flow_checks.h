@@ -14,6 +14,7 @@
 #include "flow/mpm_flow_parts.h"
 
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -61,6 +62,8 @@ class MPMFlowChecks : protected Pointers {
        has_gravity = false;
 
   double density(int i) const;
+  bool is_solid(int i) const;
+  void check_masses(const std::vector<bigint> &mine) const;
   void check_liquids();
   void check_solids();
   void check_laws();

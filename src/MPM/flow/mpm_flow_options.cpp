@@ -264,12 +264,18 @@ void MPMFlowLiquids::find_groups()
   }
 }
 
+int MPMFlowLiquids::liquid(int mask) const
+{
+  int found = -1;
+  for (std::size_t k = 0; k < bits.size(); k++)
+    if (mask & bits[k]) found = (int) k;
+  return found;
+}
+
 double MPMFlowLiquids::density(int mask) const
 {
-  double density = options.density;
-  for (std::size_t k = 0; k < bits.size(); k++)
-    if (mask & bits[k]) density = options.liquids[k].density;
-  return density;
+  const int k = liquid(mask);
+  return k < 0 ? options.density : options.liquids[k].density;
 }
 
 double MPMFlowLiquids::acceleration_per_stress() const

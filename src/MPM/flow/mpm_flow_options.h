@@ -88,7 +88,9 @@ class MPMFlowLiquids : protected Pointers {
   MPMFlowLiquids(class LAMMPS *, const MPMIncompressibleOptions &);
   /** Finds the groups. Stops with an error if one does not exist. */
   void find_groups();
-  /** Density of points in groups with these bits, that are no solids. */
+  /** Number of the liquid of points in groups with these bits, that are no solids; -1: none. */
+  int liquid(int mask) const;
+  /** Density of such points. */
   double density(int mask) const;
   /** Largest kinematic viscosity [length^2/time], which limits explicit steps. */
   double largest_kinematic_viscosity() const;
