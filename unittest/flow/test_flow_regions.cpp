@@ -148,6 +148,31 @@ SERIAL_TEST(Regions, Canal)
   EXPECT_NEAR(measured("energy", last / first), 1.0, 0.12);
 }
 
+// A wall between two pools that is just one spacing thick, with its surfaces in planes of nodes, holds
+// the water, wherever it is: distances of nodes are round-off there, of either sign. The force on it
+// is that of both depths
+SERIAL_TEST(Regions, PlateInPlanesOfNodes)
+{
+  for (const int dim : {2, 3})
+    for (const double origin : {0.0, -2.0, -1.0})
+      for (const int k : {3, 6, 7, 9}) {
+        const double low = origin + 0.1 * k, high = low + 0.1, thick = dim == 3 ? 0.2 : 1.0;
+        const auto name = strprintf("%dd, origin %g, %d cells", dim, origin, k);
+        Scene run(
+            box(dim, "si", dim == 3 ? "f f f" : "f f",
+                strprintf("%g %g 0 1 0 0.2", origin, origin + 2.0), 1, 0.05) +
+            strprintf("region left block INF %.10g 0 0.8 INF INF\n"
+                      "region right block %.10g INF 0 0.2 INF INF\n",
+                      low, high) +
+            "region pools union 2 left right\ncreate_points 1 region pools spacing 0.05\n" +
+            strprintf("region plate block %.10g %.10g INF INF INF INF\n", low, high) +
+            "fix w all mpm/incompressible 0.1 1 region plate\nfix g all gravity 1 vector 0 -1 0\n"
+            "timestep 0.01\nrun 10\n");
+        EXPECT_NEAR(entry(run, REGIONS) / (0.5 * (0.64 - 0.04) * thick), 1.0, 1e-8) << name;
+        EXPECT_LT(entry(run, FASTEST), 1e-9) << name;
+      }
+}
+
 // shores, where what is left of cells is small: nothing but a creep of points
 SERIAL_TEST(Regions, Shore)
 {

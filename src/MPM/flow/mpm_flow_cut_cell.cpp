@@ -18,15 +18,15 @@ static constexpr int PLACES = 8;
 
 double MPMFlowCutCell::positive(double a, double b)
 {
-  if (a >= 0.0 && b >= 0.0) return 1.0;
   if (a <= 0.0 && b <= 0.0) return 0.0;
+  if (a >= 0.0 && b >= 0.0) return 1.0;
   return std::max(a, b) / std::fabs(a - b);
 }
 
 double MPMFlowCutCell::positive(double a, double b, double c)
 {
-  if (a >= 0.0 && b >= 0.0 && c >= 0.0) return 1.0;
   if (a <= 0.0 && b <= 0.0 && c <= 0.0) return 0.0;
+  if (a >= 0.0 && b >= 0.0 && c >= 0.0) return 1.0;
   const int n = (a > 0.0) + (b > 0.0) + (c > 0.0);
   const double sign = n == 1 ? 1.0 : -1.0;    // makes the corner that is alone on its side positive
   a *= sign;

@@ -49,6 +49,8 @@ void MPMFlowGas::find_left(const std::vector<double> &share)
   left.resize(n);
   for (std::size_t k = 0; k < cells.cells.size(); k++) {
     const auto &cell = cells.cells[k];
+    // shares in a closed cell at the level of the surface would have no counterpart below it
+    if (water.regions && water.regions->is_closed(cell.number)) continue;
     const double fraction = water.regions ? water.regions->volume_fraction(cell.number) : 1.0;
     if (!water.is_wet(cell.number)) {
       const int pocket = pockets.pocket(cell.number);

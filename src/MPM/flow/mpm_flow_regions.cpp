@@ -31,6 +31,8 @@ using namespace MPM_NS;
 static constexpr double HELD = 3.5;
 // open share of a face that is only rounding
 static constexpr double NO_SHARE = 1.0e-9;
+// distance from a surface that is none, in spacings
+static constexpr double IN_SURFACE = 1.0e-9;
 // distance that points are kept outside of walls, in spacings
 static constexpr double MARGIN = 1.0e-6;
 // distance between two regions from which on there is a gap, in spacings
@@ -155,6 +157,8 @@ double MPMFlowRegions::distance(const double *x, double far, int &nearest) const
       nearest = w;
     }
   }
+  // a plane of nodes that is a surface has no side that round-off chooses
+  if (std::fabs(least) < IN_SURFACE * cells.lattice.h) return 0.0;
   return std::max(-far, least);
 }
 
