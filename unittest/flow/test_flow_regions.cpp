@@ -148,9 +148,9 @@ SERIAL_TEST(Regions, Canal)
   EXPECT_NEAR(measured("energy", last / first), 1.0, 0.12);
 }
 
-// A wall between two pools that is just one spacing thick, with its surfaces in planes of nodes, holds
-// the water, wherever it is: distances of nodes are round-off there, of either sign. The force on it
-// is that of both depths
+// A wall between two pools that is just one spacing thick, with its surfaces in planes of nodes,
+// holds the water, wherever it is: distances of nodes are round-off there, of either sign. The
+// force on it is that of both depths
 SERIAL_TEST(Regions, PlateInPlanesOfNodes)
 {
   for (const int dim : {2, 3})

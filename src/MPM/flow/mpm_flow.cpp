@@ -51,9 +51,9 @@ static constexpr double FLIP_OF_SMOOTH = 0.98, SMOOTH = 0.08, NOISY = 0.16;
 // above which this is so, with solids, too, where energies of waves of 8 cells vary by 12 %, and
 // which are worth a warning
 static constexpr double GAIN = 0.03, GAIN_OF_SOLIDS = 0.15, MUCH_GAIN = 0.1;
-// energy that is in play at least, over the work of all forces along a spacing, or the tolerance of
-// the pressure, which leaves about this share of forces: of velocities of 0.0014 (g h)^(1/2), and of
-// waves as high as 0.01 of a spacing. Points of a fluid at rest creep by less
+// energy that is in play at least, over the work of all forces along a spacing, unless the
+// tolerance of the pressure, which leaves about this share of forces, is larger: that of velocities
+// of 0.0014 (g h)^(1/2), and of waves of 0.01 of a spacing. Points of a fluid at rest creep by less
 static constexpr double IN_PLAY = 1.0e-6;
 // passes that fit the gradients of velocities with which points begin, at most, and their change of
 // velocities of faces, relative to the largest one, that ends them: a pass leaves up to 0.58 of

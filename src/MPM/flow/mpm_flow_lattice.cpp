@@ -297,10 +297,10 @@ void MPMFlowLattice::list_cells()
 
 /* ----------------------------------------------------------------------
    Images beyond several walls have the rules of all of these at once, so that no axis comes first.
-   Behind a wall without slip the velocity along it is odd about that of the wall also for faces that
-   are in or beyond another wall: a lid has its velocity up to the edge. Beyond two walls without
-   slip, which may have different velocities, the velocity along both is the mean of the images of
-   images in either order, and so that of the source.
+   Behind a wall without slip the velocity along it is odd about that of the wall also for faces
+   that are in or beyond another wall: a lid has its velocity up to the edge. Beyond two walls
+   without slip, which may have different velocities, the velocity along both is the mean of the
+   images of images in either order, and so that of the source.
 ------------------------------------------------------------------------- */
 
 void MPMFlowLattice::list_images()
