@@ -321,6 +321,12 @@ void MPMFlowLattice::list_images()
       if (beyond(index)) add_image(number, index);
       for (int c = 0; c < lattice.dim; c++) add_face_image(number, index, c);
     }
+  // sums then do not depend on the order of blocks: a source has one image beyond the same walls
+  const auto by_walls = [](const auto &a, const auto &b) {
+    return a.walls < b.walls;
+  };
+  std::stable_sort(images.begin(), images.end(), by_walls);
+  std::stable_sort(face_images.begin(), face_images.end(), by_walls);
 }
 
 /** The walls beyond which a cell is: bit 2 d + s for the lower (s = 0) or upper one of axis d. */
@@ -376,7 +382,8 @@ void MPMFlowLattice::add_face_image(int number, const int index[3], int axis)
     const bool none = from < 0 || (has_wall && source[axis] % last == 0);
     if (none) normal = 0.0;
     if (from >= 0 || in_wall)
-      faces.push_back({number, axis, from < 0 ? number : from, normal * factor, shift, normal});
+      faces.push_back(
+          {number, axis, from < 0 ? number : from, all, normal * factor, shift, normal});
   };
   const auto &wall = walls[axis][i > 0 ? 1 : 0];
   if (has_wall && i < 0) source[axis] = std::min(-i, last);

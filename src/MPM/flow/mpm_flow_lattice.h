@@ -183,6 +183,7 @@ class MPMFlowLattice : protected Pointers {
   struct FaceImage {
     int number, axis;
     int source;
+    int walls;    // as in Image
     double factor, shift, slip;
   };
   const int groupbit;
