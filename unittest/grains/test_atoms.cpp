@@ -118,3 +118,39 @@ TEST(Crystal, KeepsMomentumAndEnergyWithAPlate)
     EXPECT_LT(run.evaluate("c_e[1]"), 0.8 * impact);    // it has hit
   }
 }
+
+// LAMMPS takes the cutoff of communication from the lengths of bonds only where there is no pair
+// style and no cutoff of the user. Two beads are bonded across a periodic face, 0.42 apart, next to
+// material points, or to elements, whose nodes are ghosts up to 0.1.
+TEST(Bonds, ReachAcrossFacesWithoutAPairStyle)
+{
+  const ScratchFile cable(
+      "cable.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0.8 0.4 0\n2 0.9 0.4 0\n3 1.0 0.4 0\n"
+      "$EndNodes\n$Elements\n2\n1 1 0 1 2\n2 1 0 2 3\n$EndElements\n");
+  const std::string of_cable = cable.name + " thickness 0.01", block = "region block spacing 0.025",
+                    solid = "fix m points mpm/material density 1000 neohookean 1.0e5 0.3\n";
+  const std::pair<std::string, std::string> cases[] = {
+      {block, solid + "fix grid points mpm 0.05"},
+      {block, "fix grid points mpm/incompressible 0.05 1000"},
+      {"mesh " + of_cable,
+       solid + "fix e points mpm/elements " + of_cable + "\nfix points points nve"}};
+  for (const auto &[points, fixes] : cases) {
+    Scene run("units si\ndimension 2\nboundary p p p\natom_style hybrid bond mpm\n"
+              "neighbor 0.02 bin\nregion box block 0 2 0 1 -0.1 0.1\n"
+              "create_box 2 box bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 8\n"
+              "region block block 0.8 1.2 0.2 0.6 INF INF\nmass * 1\ncreate_points 1 " +
+              points +
+              "\ngroup points type 1\nvariable n equal count(points)\n"
+              "create_atoms 2 single 0.21 0.81 0\ncreate_atoms 2 single 1.79 0.81 0\n"
+              "group beads type 2\nset group beads mass 10\n" +
+              fixes +
+              "\nfix move beads nve\nbond_style harmonic\nbond_coeff 1 200 0.3\n"
+              "create_bonds single/bond 1 $(v_n+1) $(v_n+2)\n"
+              "timestep 1e-5\nthermo_style custom step ebond\n");
+    for (int k = 0; k < 2; k++) {
+      run.commands("run 0\n");
+      EXPECT_NEAR(run.evaluate("ebond"), 200.0 * (0.42 - 0.3) * (0.42 - 0.3), 1.0e-12) << fixes;
+    }
+  }
+}

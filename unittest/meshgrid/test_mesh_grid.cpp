@@ -509,6 +509,28 @@ SERIAL_TEST(MeshGrid, LostLoads)
   EXPECT_THAT(half[0], HasSubstr("traction on xhi acts on nothing in 43.8 % of its area"));
 }
 
+// LAMMPS takes the cutoff of communication from the lengths of bonds, as without the fix: two beads,
+// 0.42 apart, of two ranks
+TEST(MeshGrid, BondsReachAcrossRanks)
+{
+  const ScratchFile grid("grid.msh", gmsh(QUADS, {4, 4, 0}, [](double x, double y, double) {
+                           return std::array<double, 3>{0.8 + 0.4 * x, 0.2 + 0.4 * y, 0.0};
+                         }));
+  Scene run("units si\ndimension 2\nboundary f f p\natom_style hybrid bond mpm\n"
+            "neighbor 0.02 bin\nregion box block 0 2 0 1 -0.1 0.1\n"
+            "create_box 2 box bond/types 1 extra/bond/per/atom 2 extra/special/per/atom 8\n"
+            "region block block 0.8 1.2 0.2 0.6 INF INF\nmass * 1\n"
+            "create_points 1 region block spacing 0.05\ngroup points type 1\n"
+            "create_atoms 2 single 0.79 0.81 0\ncreate_atoms 2 single 1.21 0.81 0\n"
+            "group beads type 2\nset group beads mass 10\n"
+            "fix m points mpm/material density 1000 neohookean 1.0e5 0.3\nfix g points mpm/mesh " +
+            grid.name +
+            "\nfix move beads nve\nbond_style harmonic\nbond_coeff 1 200 0.3\n"
+            "variable n equal count(points)\ncreate_bonds single/bond 1 $(v_n+1) $(v_n+2)\n"
+            "timestep 1e-5\nthermo_style custom step ebond\nrun 0\n");
+  EXPECT_NEAR(run.evaluate("ebond"), 200.0 * (0.42 - 0.3) * (0.42 - 0.3), 1.0e-12);
+}
+
 // Points on sides of triangles have the strain of one by rounding: too soft, which is told
 SERIAL_TEST(MeshGrid, PointsOnSides)
 {

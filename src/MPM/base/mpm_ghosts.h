@@ -31,6 +31,8 @@ inline void need_ghosts_within(LAMMPS *lmp, double distance)
   // a cutoff that is less than that of a pair style is a warning of LAMMPS
   const auto *const pair = lmp->force->pair;
   const bool is_largest = !pair || distance > pair->cutforce + neighbor->skin;
+  // and LAMMPS takes one from the lengths of bonds only where there is none of the user
+  if (!pair && comm->cutghostuser == 0.0) distance = std::max(distance, comm->get_comm_cutoff());
   if (comm->mode == Comm::SINGLE) {
     if (is_largest) comm->cutghostuser = std::max(comm->cutghostuser, distance);
     return;

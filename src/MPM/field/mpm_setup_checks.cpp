@@ -638,7 +638,9 @@ void LAMMPS_NS::allow_no_ghosts(LAMMPS *lmp, double h)
 {
   const double nothing = 1.0e-8 * h;
   double &cutoff = lmp->comm->cutghostuser;
-  const bool any = lmp->force->pair && lmp->force->pair->cutforce > 0.0;
+  const Force &force = *lmp->force;
+  const bool any = (force.pair && force.pair->cutforce > 0.0) || force.bond || force.angle ||
+      force.dihedral || force.improper;
   if (!any && cutoff == 0.0) cutoff = nothing;
   if (any && cutoff == nothing) cutoff = 0.0;
 }

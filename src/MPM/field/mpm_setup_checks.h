@@ -116,8 +116,10 @@ std::string remedy_of_step(class LAMMPS *);
  *  integrator. */
 int seen_as_integrator(class LAMMPS *, const class Fix &mine);
 
-/** Points need no ghosts: without pair forces, a cutoff that is next to nothing spares LAMMPS's
- *  warning about none. With them it would warn of this one, too. Called in init(). */
+/** Points need no ghosts: without forces between atoms, a cutoff that is next to nothing spares
+ *  LAMMPS's warning about none. With pair forces it would warn of this one, too, and with bonds
+ *  any cutoff of the user keeps it from taking one from their lengths. h: node spacing. Called in
+ *  init(). */
 void allow_no_ghosts(class LAMMPS *, double h);
 
 /** Stops with an error if another fix, too, moves material points in the group of a fix that moves

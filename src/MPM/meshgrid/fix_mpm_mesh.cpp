@@ -140,10 +140,7 @@ void FixMPMMesh::init()
                "not compiled");
   forces->init(fmt::format("fix mpm/mesh {}", id));
 
-  // points need no ghosts, see FixMPM::init()
-  const double nothing = 1.0e-8 * body->shortest;
-  if (!force->pair && comm->cutghostuser == 0.0) comm->cutghostuser = nothing;
-  if (force->pair && comm->cutghostuser == nothing) comm->cutghostuser = 0.0;
+  allow_no_ghosts(lmp, body->shortest);
   atom->sortfreq = 0;
   make_plan();
 }
