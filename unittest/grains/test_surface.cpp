@@ -302,6 +302,82 @@ TEST(SurfaceContact, DoesNotNeedPointsInside)
   }
 }
 
+// Grains that come during a run or between two are in the lists as soon as they are in their group,
+// whichever of the two fixes is first. Lists are made, and radii found, in all steps.
+PARAMETER_TEST(LaterGrains, AreInTheLists, std::string,
+               Values("deposited before", "deposited after", "created"))
+{
+  const auto scene = [&](const std::string &start, const std::string &surface) {
+    const std::string deposit = "region source block 2.4 2.6 7.4 7.6 5.8 5.9\n"
+                                "fix more grains deposit 1 2 10 4711 region source vz -1 -1\n";
+    const bool before = GetParam() == "deposited before", after = GetParam() == "deposited after";
+    return start + grains + fixes + (before ? deposit : "") + surface + (after ? deposit : "") +
+        "neigh_modify every 1 delay 0 check no\nfix g all gravity 1.0 vector 0 0 -1\n"
+        "timestep 0.01\nrun 30\n" +
+        (before || after ? "" : "create_atoms 2 single 2.5 7.5 5.3\ngroup grains type 2\n") +
+        "run 70\n";
+  };
+  Scene all(scene(head, plain + contact)), some(scene(bare_head, listed + bare_contact));
+  double v = 0.0;
+  for (int i = 0; i < all.n(); i++)
+    if (all.lmp->atom->tag[i] == 6916) v = all.v()[i][2];
+  EXPECT_GT(measured("velocity", over_ranks(v)), -0.6);    // at least -0.7 in free fall
+  EXPECT_LT(measured("difference", difference(all.gather(), some.gather())), 1.0e-10);
+}
+
+// A fix that comes after this one inserts them when their group is known already
+TEST(LaterGrains, AreInTheListsOneStepLate)
+{
+  Scene run(bare_head + grains + fixes + listed + bare_contact +
+            "region source block 2.4 2.6 7.4 7.6 9.8 9.9\n"
+            "fix more grains deposit 1 2 10 4711 region source vz -1 -1\ntimestep 1e-4\n");
+  double steps = 0.0, out = 0.0;    // steps with the grain, and with the grain out of the lists
+  run.each_step([&](double **) {
+    for (int i = 0; i < run.n(); i++)
+      if (run.lmp->atom->tag[i] == 6916) {
+        steps++;
+        out += i >= run.lmp->atom->nfirst;
+      }
+  });
+  run.commands("run 20 post no\n");
+  EXPECT_GT(over_ranks(steps), 5.0);
+  EXPECT_EQ(over_ranks(out), 1.0);
+}
+
+/** Largest difference of the radius of a point from this one. */
+static double radius_error(Scene &run, double radius)
+{
+  double most = 0.0;
+  for (int i = 0; i < run.n(); i++)
+    if (run.lmp->atom->type[i] == 1) grow(most, run.lmp->atom->radius[i] - radius);
+  return measured("difference of radii", over_ranks(most, MPI_MAX));
+}
+
+// LAMMPS's write_data begins as a run does, and does not end so
+TEST(Surface, StaysAsItIsWhenDataAreWritten)
+{
+  const ScratchFile file("written.data");
+  for (const auto &surface : {plain, skin}) {
+    const std::string start = head + grains + fixes + surface + rest, end = "run 20\n";
+    Scene whole(start + end + end), written(start + end + "write_data " + file.name + "\n");
+    EXPECT_LT(radius_error(written, 0.5 * 1.2 * 0.5), 1.0e-14);
+    written.commands(end);
+    EXPECT_LT(measured("difference", difference(whole.gather(), written.gather())), 1.0e-12);
+  }
+  Scene before(head + grains + fixes + plain + rest + "write_data " + file.name + "\nrun 1\n");
+}
+
+// Without the fix, points are as create_points makes them, times the scale
+TEST(Surface, LeavesPlainDiameters)
+{
+  for (const auto &surface : {plain, skin}) {
+    Scene run(head + grains + fixes + replaced(surface, "surface", "surface grow 2 scale 1.1") +
+              rest + "run 5\nunfix surf\n");
+    EXPECT_LT(radius_error(run, 0.5 * 1.1 * 0.5), 1.0e-14);
+    if (surface == plain) run.commands("run 5\n");    // a group of lists needs the fix
+  }
+}
+
 TEST(SurfaceContact, SetsListsUp)
 {
   const std::string more = bare_contact + "fix g all gravity 1.0 vector 0 0 -1\ntimestep 0.01\n";
@@ -422,6 +498,8 @@ TEST(Surface, RefusesMistakes)
                   {"group low region block\nfix surf block mpm/surface lists grains\n"
                    "fix more low mpm/surface lists grains",
                    "fix surf has set the lists; use one fix mpm/surface"},
+                  {"group few union grains\nfix surf block mpm/surface lists few\ngroup few delete",
+                   "group few does not exist any more"},
                   {"set group grains type 1\nfix surf block mpm/surface lists grains",
                    "and other atoms have the type 1: give them different ones"},
                   {"fix surf block mpm/surface\nset type 1 diameter 0.1", "define the fix after"}},

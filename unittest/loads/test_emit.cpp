@@ -122,6 +122,16 @@ PARAMETER_TEST(Plug, IsExact, Inflow,
   EXPECT_LT(std::fabs(e[10]), 1e-12 * e[12]);                      // the residual
 }
 
+// LAMMPS's write_data begins as a run does: the inlet is filled by a run alone
+SERIAL_TEST(Plug, DataFileIsNoStart)
+{
+  const ScratchFile file("written.data");
+  Scene run(plug("0.02", 0.0, "2 0 0") + "timestep 1e-3\nwrite_data " + file.name + " nocoeff\n");
+  EXPECT_EQ(run.n(), 0);
+  run.commands("run 0\n");
+  EXPECT_NEAR(run.fix("in")->compute_scalar(), RHO * B * 0.1, 1e-9);
+}
+
 // an inlet that is not wide enough for two points, or for a whole one, has one column in its middle
 SERIAL_TEST(Plug, NarrowInlet)
 {

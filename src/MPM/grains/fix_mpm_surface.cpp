@@ -90,6 +90,15 @@ FixMPMSurface::FixMPMSurface(LAMMPS *lmp, int narg, char **arg) :
   give_largest();
 }
 
+/** Without the fix, points have the diameter that create_points gives them, times the scale. */
+FixMPMSurface::~FixMPMSurface()
+{
+  const bool all_is_deleted = !update;
+  if (all_is_deleted) return;
+  surface_group = group_id.empty() ? -1 : group->find(group_id);
+  give_all(1.0);
+}
+
 /** Groups can be deleted, and their bit given to others: the name decides at the start of each
  *  run. */
 void FixMPMSurface::find_group(int iarg)
@@ -139,6 +148,11 @@ void FixMPMSurface::init()
 {
   require_field(lmp, *this);
   if (!group_id.empty()) find_group(Error::NOLASTLINE);
+  if (!grains_id.empty() && group->find(grains_id) < 0)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/surface {} lists: group {} does not exist any more: keep it, or define the "
+               "fix anew with another one",
+               id, grains_id);
   pre_exchange_migrate = moves_atoms();    // looked at by the history of pair styles, in its init()
   for (const auto *field : MPMField::all(lmp))
     refuse_field(lmp, *this, *field,
@@ -188,6 +202,8 @@ void FixMPMSurface::init()
  *  does what the volume on the lattice needs. */
 void FixMPMSurface::setup_pre_exchange()
 {
+  // write_data asks between runs, when all have the largest radii, which the next run begins with
+  if (!update->setupflag) return;
   domain->pbc();    // reference positions of points are inside of the box
   for (auto *field : MPMField::all(lmp)) {
     if (force->pair) MPMSetupChecks(lmp, *field).radii();    // cutoffs are for the largest ones
@@ -208,6 +224,8 @@ void FixMPMSurface::pre_force(int)
     comm->forward_comm(this);
     next_reneighbor = update->ntimestep + 1;
   }
+  // of a fix that has come after this one in this step
+  if (atom->natoms != natoms && take_grains()) next_reneighbor = update->ntimestep + 1;
 }
 
 /** Before ghosts and neighbor lists are made. */
@@ -216,7 +234,26 @@ void FixMPMSurface::pre_exchange()
   // points may have left the nodes that were in their reach, or else there would be no new lists
   for (auto *field : MPMField::all(lmp)) field->map->valid = false;
   find_surface();
+  take_grains();
   if (moves_atoms()) keep_first();
+}
+
+/** Grains that have come since the last time (fix pour, create_atoms, ...) are in the group of the
+ *  lists, too. Returns whether there are any. Collective. */
+bool FixMPMSurface::take_grains()
+{
+  natoms = atom->natoms;
+  if (grains_id.empty()) return false;
+  const int of_grains = group->bitmask[group->find(grains_id)], bit = group->bitmask[surface_group];
+  int some = 0, some_all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    int &mask = atom->mask[i];
+    if (!(mask & of_grains) || (mask & bit) || has_radius(i)) continue;
+    mask |= bit;
+    some = 1;
+  }
+  MPI_Allreduce(&some, &some_all, 1, MPI_INT, MPI_MAX, world);
+  return some_all;
 }
 
 bool FixMPMSurface::moves_atoms() const
@@ -267,11 +304,12 @@ double FixMPMSurface::present_radius(int i) const
   return std::min(radius_of(V * points->jacobian(i), 1.0), radius_of(V, grow));
 }
 
-void FixMPMSurface::give_largest()
+/** All points have a radius, with this growth. */
+void FixMPMSurface::give_all(double growth)
 {
   known = false;
   for (int i = 0; i < atom->nlocal; i++)
-    if (has_radius(i)) give_radius(i, true, radius_of(atom->vfrac[i], grow));
+    if (has_radius(i)) give_radius(i, true, radius_of(atom->vfrac[i], growth));
 }
 
 void FixMPMSurface::give_radius(int i, bool surface, double radius)

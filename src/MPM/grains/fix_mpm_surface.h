@@ -41,6 +41,7 @@ struct MPMSurfaceOptions {
 class FixMPMSurface : public FixMPMState, public MPMListedPoints, private MPMSurfaceOptions {
  public:
   FixMPMSurface(class LAMMPS *, int, char **);
+  ~FixMPMSurface() override;
   int setmask() override
   {
     return FixConst::PRE_EXCHANGE | FixConst::PRE_FORCE | FixConst::POST_RUN;
@@ -66,6 +67,7 @@ class FixMPMSurface : public FixMPMState, public MPMListedPoints, private MPMSur
 
  private:
   int surface_group = -1;       // group of the points with a radius in this run; -1: none
+  bigint natoms = 0;            // atoms when grains were last put into the group
   bool known = false;           // false: all points have their largest radius
   double *at_surface;           // [n] 1: the point has a radius, 0: it has none
   std::vector<double> share;    // share of space that is filled, at the points of a field
@@ -80,8 +82,10 @@ class FixMPMSurface : public FixMPMState, public MPMListedPoints, private MPMSur
   bool moves_atoms() const;
   void warn_of_diameters() const;
   void give_radius(int i, bool at_surface, double radius);
-  void give_largest();
+  void give_all(double growth);
+  void give_largest() { give_all(grow); }
   void find_surface();
+  bool take_grains();
   void keep_first();
 };
 

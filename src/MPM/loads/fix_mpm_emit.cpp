@@ -277,6 +277,7 @@ void FixMPMEmit::init()
  *  filled. */
 void FixMPMEmit::setup_pre_exchange()
 {
+  if (!update->setupflag) return;    // write_data asks without a run
   make_inlet();
   note_ids();
   if (past.started != 0.0) return;
