@@ -468,6 +468,21 @@ SERIAL_TEST(Doubts, PointsMovedBetweenRuns)
   EXPECT_EQ(moved("region d block 0.1 0.2 0.8 0.9 INF INF\ncreate_points 2 region d ppc 2\n"), 0);
   EXPECT_EQ(moved("group left region b\ndisplace_atoms left move 0 0.01 0 units box\n"), 0);
   EXPECT_EQ(moved("velocity upper set 0 -1 0\nrun 2 post no\nrun 2 pre no\n"), 0);
+  // turns leave strain and stress as they were, also those after which a square looks the same
+  const std::string turns = "a command has turned",
+                    strain = "velocity upper ramp vx -0.1 0.1 x 0.4 0.6 units box\nrun 2\n";
+  for (const char *angle : {"0.01", "45", "90", "180"}) {
+    const auto rotate = strprintf("displace_atoms upper rotate 0.5 0.7 0 0 0 1 %s\n", angle);
+    EXPECT_EQ(told(scene + strain + rotate, turns), 1) << angle;
+    EXPECT_EQ(told(scene + strain + rotate, words), 0) << angle;
+    EXPECT_EQ(told(scene + rotate, turns), 0) << angle;
+    EXPECT_EQ(told(replaced(scene, "mpm 0.05\n", "mpm 0.05 frame total\n") + rotate, turns), 1);
+  }
+  for (const char *command :
+       {"displace_atoms upper move 0.01 0.05 0 units box\n",
+        "displace_atoms upper rotate 0.5 0.7 0 0 0 1 360\n",
+        "group upper clear\ngroup other type 2\n", "reset_atoms id sort yes\n"})
+    EXPECT_EQ(told(scene + strain + command, turns), 0) << command;
   // before the first run, and across a periodic face
   EXPECT_EQ(told(START + GRID + CONDUCTS + STEP +
                      "displace_atoms all random 0.001 0.001 0 4711 units box\n",

@@ -10,10 +10,15 @@
 
 #include "atom.h"
 #include "base/mpm_lists.h"
+#include "base/mpm_points.h"
 #include "comm.h"
 #include "domain.h"
 #include "error.h"
+#include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
+#include "force.h"
+#include "material/material.h"
+#include "material/material_point.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +26,7 @@
 #include <vector>
 
 using namespace LAMMPS_NS;
+using namespace MPM_NS;
 
 static constexpr int PAIRS[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
@@ -36,6 +42,7 @@ MPMShapeWatch::Shapes MPMShapeWatch::find() const
     sums[COUNT] += 1.0;
     sums[TAGS] += (double) atom->tag[i];
     for (int d = 0; d < 3; d++) sums[PLACE + d] += x[d];
+    for (int d = 0; d < 3; d++) sums[TAGGED + d] += (double) atom->tag[i] * x[d];
     for (int p = 0; p < 6; p++) sums[SQUARE + p] += x[PAIRS[p][0]] * x[PAIRS[p][1]];
   }
 
@@ -49,11 +56,72 @@ MPMShapeWatch::Shapes MPMShapeWatch::find() const
   return all;
 }
 
+// displacements of this share of a body are told, and not round-off of sums
+static constexpr double SHARE = 1.0e-9, ROUND_OFF = 1.0e-13;
+
+/** Of all second moments about the center, the sum and the squares do not change in turns. Of the
+ *  first moments with tags as weights, which also see turns of bodies that look the same after
+ *  them, this is the length. */
+MPMShapeWatch::Motion MPMShapeWatch::compare(const Sums &then, const Sums &now)
+{
+  double trace[2] = {}, square[2] = {}, length[2] = {}, far = 0.0, turned = 0.0, shifted = 0.0;
+  const auto moment = [](const Sums &s, int p) {
+    const auto [a, b] = PAIRS[p];
+    return s[SQUARE + p] - s[PLACE + a] * s[PLACE + b] / s[COUNT];
+  };
+  const auto tagged = [](const Sums &s, int d) {
+    return s[TAGGED + d] - s[TAGS] * s[PLACE + d] / s[COUNT];
+  };
+  for (const auto *s : {&then, &now}) {
+    const int k = (s == &now);
+    for (int p = 0; p < 6; p++) {
+      const bool diagonal = p < 3;
+      if (diagonal) trace[k] += moment(*s, p);
+      square[k] += (diagonal ? 1.0 : 2.0) * moment(*s, p) * moment(*s, p);
+      if (diagonal) far += (*s)[SQUARE + p];
+    }
+    length[k] = std::hypot(tagged(*s, 0), tagged(*s, 1), tagged(*s, 2));
+  }
+  const double least = SHARE * trace[0] + ROUND_OFF * far;
+  if (fabs(trace[1] - trace[0]) > least || fabs(sqrt(square[1]) - sqrt(square[0])) > least)
+    return STRAINED;
+
+  for (int p = 0; p < 6; p++) turned = std::max(turned, fabs(moment(now, p) - moment(then, p)));
+  if (turned > least) return TURNED;
+  const double little = SHARE * length[0] + ROUND_OFF * then[TAGS] * sqrt(far / then[COUNT]);
+  for (int d = 0; d < 3; d++) shifted = std::max(shifted, fabs(tagged(now, d) - tagged(then, d)));
+  const bool has_same_tags = fabs(length[1] - length[0]) <= little;
+  return has_same_tags && shifted > little ? TURNED : RIGID;
+}
+
+/** Has a solid point that is in exactly these groups a strain, or a stress that has a direction?
+ *  Collective. */
+bool MPMShapeWatch::is_strained(int mask) const
+{
+  const double scale = force->mvv2e * force->nktv2p;    // of density velocity^2, in pressure units
+  const MPMPoints &points = *MPMPoints::get(atom);
+  std::map<const FixMPMMaterial *, double> stiffness;
+  for (const auto *material : field.materials) {
+    if (!material->material->is_solid()) continue;
+    const double c = MaterialPoint(*material->material).wave_speed();
+    stiffness[material] = scale * material->material->density() * c * c;
+  }
+  int some = 0, some_all;
+  for (int i = 0; i < atom->nlocal && !some; i++) {
+    if (!field.is_point(i) || atom->mask[i] != mask) continue;
+    const auto found = stiffness.find(field.material_of(i));
+    if (found == stiffness.end()) continue;
+    const double *const tau = points.tau[i], mean = (tau[0] + tau[1] + tau[2]) / 3.0;
+    for (int k = 0; k < 9; k++) some |= fabs(points.F[i][k] - (k % 4 == 0)) > SHARE;
+    for (int c = 0; c < 6; c++) some |= fabs(tau[c] - (c < 3 ? mean : 0.0)) > SHARE * found->second;
+  }
+  MPI_Allreduce(&some, &some_all, 1, MPI_INT, MPI_MAX, world);
+  return some_all;
+}
+
 /** Points that came, left, or changed their groups are no reason: then nothing is known. */
 void MPMShapeWatch::check()
 {
-  // displacements of this share of a body are told, and not round-off of sums
-  constexpr double SHARE = 1.0e-9, ROUND_OFF = 1.0e-13;
   if (before.empty() || warned) return;
   const Shapes now = find();
   for (const auto &[mask, then] : before) {
@@ -61,23 +129,19 @@ void MPMShapeWatch::check()
     if (found == now.end()) continue;
     const auto &sums = found->second;
     if (sums[COUNT] != then[COUNT] || sums[TAGS] != then[TAGS]) continue;
-    // what turns do not change of the second moments about the center: sum and squares
-    double trace[2] = {0.0, 0.0}, square[2] = {0.0, 0.0}, far = 0.0;
-    for (const auto *s : {&then, &sums}) {
-      const int k = (s == &sums);
-      for (int p = 0; p < 6; p++) {
-        const auto [a, b] = PAIRS[p];
-        const double moment = (*s)[SQUARE + p] - (*s)[PLACE + a] * (*s)[PLACE + b] / (*s)[COUNT];
-        if (a == b) trace[k] += moment;
-        square[k] += (a == b ? 1.0 : 2.0) * moment * moment;
-        if (a == b) far += (*s)[SQUARE + p];
-      }
-    }
-    const double least = SHARE * trace[0] + ROUND_OFF * far;
-    if (fabs(trace[1] - trace[0]) <= least && fabs(sqrt(square[1]) - sqrt(square[0])) <= least)
+    const Motion motion = compare(then, sums);
+    // with frame total, positions of the reference have not turned either
+    if (motion == RIGID || (motion == TURNED && !field.options.total && !is_strained(mask)))
       continue;
     warned = true;
-    if (comm->me == 0)
+    if (comm->me) return;
+    if (motion == TURNED)
+      error->warning(FLERR,
+                     "Fix mpm {}: a command has turned {:.0f} points since the last run, and their "
+                     "deformation and stress are as they were: turn bodies by their velocity, or "
+                     "before the first run",
+                     field.id(), sums[COUNT]);
+    else
       error->warning(
           FLERR,
           "Fix mpm {}: a command has moved {:.0f} points relative to each other since "

@@ -19,8 +19,9 @@ class MPMField;
 
 /** Warns of points that commands between two runs have moved relative to each other, such as
  *  displace_atoms ramp and change_box remap: their deformation knows nothing of it. Bodies may be
- *  moved and turned as a whole, so that points that are in the same groups are looked at together,
- *  as these commands move all of a group. */
+ *  moved as a whole, and turned where they have no strain or stress that would have to turn, too.
+ *  Points that are in the same groups are looked at together, as these commands move all of a
+ *  group. */
 class MPMShapeWatch : protected Pointers {
  public:
   MPMShapeWatch(class LAMMPS *lmp, const MPMField &field) : Pointers(lmp), field(field) {}
@@ -34,12 +35,16 @@ class MPMShapeWatch : protected Pointers {
   const MPMField &field;
   bool warned = false;
 
-  enum { COUNT, TAGS, PLACE, SQUARE = PLACE + 3, NSUMS = SQUARE + 6 };
+  enum { COUNT, TAGS, PLACE, TAGGED = PLACE + 3, SQUARE = TAGGED + 3, NSUMS = SQUARE + 6 };
   /** Sums over points by the bits of their groups. */
-  using Shapes = std::map<int, std::array<double, NSUMS>>;
+  using Sums = std::array<double, NSUMS>;
+  using Shapes = std::map<int, Sums>;
   Shapes before;
 
   Shapes find() const;
+  enum Motion { RIGID, TURNED, STRAINED };
+  static Motion compare(const Sums &then, const Sums &now);
+  bool is_strained(int mask) const;
 };
 
 }    // namespace LAMMPS_NS
