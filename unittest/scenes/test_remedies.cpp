@@ -1224,6 +1224,8 @@ const Remedy outputs[] = {
 // a run without set-up knows only what was there at the last one
 const char *const ANEW = "use run without pre no";
 const Edit SET_UP = {{"run 2 pre no", "run 2"}};
+const std::string FEWER = "run 1\nregion few block 2 8 2.5 3 INF INF\ngroup few region few\n"
+                          "delete_atoms group few\nrun 2 pre no\n";
 const Remedy runs[] = {
     {"AnewField", one("", "run 1\nfix A one mpm 1.0 shape cubic\nrun 2 pre no\n"), ANEW, SET_UP},
     {"AnewWall",
@@ -1234,6 +1236,15 @@ const Remedy runs[] = {
          "run 1\nregion top plane 0 3 0 0 -1 0\n"
          "fix l all mpm/traction region top pressure 0.1\nrun 2 pre no\n"),
      ANEW, SET_UP},
+    {"MorePoints",
+     one("",
+         "run 1\nregion more block 8 9 8 9 INF INF\n"
+         "create_points 1 region more ppc 2 fix A group one\nrun 2 pre no\n"),
+     ANEW, SET_UP},
+    {"FewerPoints", one("", FEWER), ANEW, SET_UP},
+    {"FewerPointsOfTwo", two("", CONTACT + FEWER), ANEW, SET_UP},
+    {"FewerPointsInAFlow", flow("") + FEWER, ANEW, SET_UP},
+    {"FewerPointsOnAMesh", meshed("frame total", FEWER), ANEW, SET_UP},
     {"AnewFlow", flow("") + "run 1\nfix w one mpm/incompressible 1.0 1.0\nrun 2 pre no\n", ANEW,
      SET_UP},
     {"AnewMesh", meshed("", "run 1\nfix M one mpm/mesh QUADS slip ylo frame total\nrun 2 pre no\n"),

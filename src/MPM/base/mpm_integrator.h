@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_INTEGRATOR_H
 #define LMP_MPM_INTEGRATOR_H
 
+#include "atom.h"
 #include "error.h"
 #include "fix.h"
 #include "lammps.h"
@@ -41,10 +42,15 @@ class MPMSetUp {
   {
     numbers = find(lmp);
     known = true;
+    natoms = -1;
   }
-  /** Start of a step: stops if there was no set-up, as there is none after the end of a run within
-   *  another one, or if fixes of this package have been defined or deleted since then, as run ...
-   *  pre no would use what is gone, and leave out what is new. who: the fix that asks. */
+  /** In post_run() of the first fix that moves points: the next ones come after points that it has
+   *  deleted. */
+  void finish(LAMMPS *lmp) { natoms = lmp->atom->natoms; }
+  /** Start of a step, before atoms come or go: stops if there was no set-up, as there is none after
+   *  the end of a run within another one, or if fixes of this package have been defined or deleted
+   *  since then, or atoms since the end of the last run, as run ... pre no would use what is gone,
+   *  and leave out what is new. who: the fix that asks. */
   void check(LAMMPS *lmp, const std::string &who) const
   {
     const Update &update = *lmp->update;
@@ -53,16 +59,20 @@ class MPMSetUp {
                       "{} has not been set up for this step: a command run among the commands of "
                       "run every ends the run that it is part of, so use a loop of runs",
                       who);
-    if (update.ntimestep != update.firststep + 1 || (known && numbers == find(lmp))) return;
+    if (update.ntimestep != update.firststep + 1) return;
+    const bigint now = lmp->atom->natoms;
+    if (known && numbers == find(lmp) && (natoms < 0 || natoms == now)) return;
+    const std::string what = known && numbers == find(lmp)
+        ? fmt::format("there are {} atoms, and were {} at the end of the last run", now, natoms)
+        : "fixes mpm/... have been defined or deleted since the last set-up";
     lmp->error->all(FLERR, Error::NOLASTLINE,
-                    "{}: fixes mpm/... have been defined or deleted since the last set-up, which "
-                    "run with pre no leaves out: use run without pre no",
-                    who);
+                    "{}: {}, which run with pre no leaves out: use run without pre no", who, what);
   }
 
  private:
   bool known = false;
   std::vector<int> numbers;
+  bigint natoms = -1;    // at the end of the run before; -1: LAMMPS has made a set-up since
 
   /** LAMMPS numbers all fixes that it makes. */
   struct Number : Fix {

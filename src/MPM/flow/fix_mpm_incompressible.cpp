@@ -132,6 +132,12 @@ void FixMPMIncompressible::initial_integrate(int)
       next_reneighbor = update->ntimestep;
 }
 
+void FixMPMIncompressible::post_run()
+{
+  if (MPMField::all(lmp).empty()) set_up.finish(lmp);
+  flow->end_run();
+}
+
 void FixMPMIncompressible::check_density(double fluid, const std::string &who) const
 {
   if (std::fabs(fluid / flow->options.density - 1.0) > MPMFlowLiquids::SAME_DENSITY)

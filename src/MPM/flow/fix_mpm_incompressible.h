@@ -45,7 +45,7 @@ class FixMPMIncompressible :
   void setup_pre_exchange() override { flow->checks.check_box(); }
   void setup_pre_neighbor() override;
   void setup(int) override { flow->start(); }
-  void post_run() override { flow->end_run(); }
+  void post_run() override;
   void initial_integrate(int) override;
   void pre_neighbor() override;
   void setup_pre_force(int vflag) override { pre_force(vflag); }

@@ -414,6 +414,11 @@ void FixMPMMesh::initial_integrate(int)
   steps++;
 }
 
+void FixMPMMesh::post_run()
+{
+  if (MPMField::all(lmp).empty()) set_up.finish(lmp);
+}
+
 void FixMPMMesh::visit_batches(int group_bits, const BatchVisitor &visit)
 {
   body->find_materials();

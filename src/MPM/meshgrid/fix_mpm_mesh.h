@@ -48,6 +48,7 @@ class FixMPMMesh :
   void setup(int) override;
   void initial_integrate(int) override;
   void pre_neighbor() override;
+  void post_run() override;
   double compute_scalar() override;
   double compute_vector(int) override;
   double memory_usage() override;

@@ -255,7 +255,10 @@ void FixMPM::pre_force(int)
 
 void FixMPM::post_run()
 {
-  if (plan) plan->watch->finish();
+  if (plan) {
+    plan->watch->finish();
+    set_up.finish(lmp);
+  }
   if (field->fracture_watch) field->fracture_watch->finish();
   field->end_run();
   field->guard->wrap_far_points();
