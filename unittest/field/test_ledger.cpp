@@ -255,6 +255,28 @@ TEST(Force, OfElementsIsInternal)
   EXPECT_NEAR(e[EXTERNAL], fallen, 1e-10 * fallen);
 }
 
+TEST(Residual, HasWhatOtherFixesTake)
+{
+  const std::string scene = plane("lj", "f f", "0 20 0 8", 1, 0.3) +
+      body("block 2 5 2 6 INF INF", "density 2 neohookean 100 0.3", "1.0 transfer apic") +
+      "fix w all addforce 0 0.1 0\ntimestep 0.01\nvelocity all set 1.5 0 0\n" + watch;
+  const double start = 0.5 * 24.0 * 2.25;
+  // at the end of each step, and of the 10th; a velocity that is set before a run without set-up
+  for (const auto &[commands, left] :
+       {std::pair("fix stop all momentum 1 linear 1 0 0\nrun 30\n", 0.0),
+        std::pair("fix stop all momentum 10 linear 1 0 0\nrun 9\n", 1.0),
+        std::pair("fix stop all momentum 10 linear 1 0 0\nrun 30\n", 0.0),
+        std::pair("run 3\nvelocity all set 0.75 NULL NULL\n"
+                  "run 3 pre no\n",
+                  0.25)}) {
+    Scene run(scene + commands);
+    const double *const e = run.compute_vector();
+    EXPECT_NEAR(e[RESIDUAL], (left - 1.0) * start, 1e-12 * start) << commands;
+    EXPECT_NEAR(e[TRANSFER], 0.0, 1e-12 * start) << commands;
+    EXPECT_GT(e[EXTERNAL], 0.0);
+  }
+}
+
 TEST(Deleted, TakesItsKineticEnergy)
 {
   Scene run(plane("lj", "f f", "0 12 0 8", 1, 0.3) +

@@ -42,5 +42,16 @@ inline std::vector<Fix *> find_fixes(LAMMPS *lmp, std::initializer_list<const ch
   return list;
 }
 
+/** Does a fix do something to atoms, and not just write or store? Those with names in capitals are
+ *  LAMMPS's own. */
+inline bool acts_on_atoms(const Fix &fix)
+{
+  for (const char *output :
+       {"^ave/", "^print$", "^vector$", "^store", "^halt$", "^balance$", "^python$",
+        "^python/invoke$", "^property/atom", "^mpm/cells$", "^[A-Z]"})
+    if (utils::strmatch(fix.style, output)) return false;
+  return true;
+}
+
 }    // namespace LAMMPS_NS
 #endif

@@ -9,6 +9,7 @@
 #include "field/mpm_ledger.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "domain.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
@@ -17,9 +18,12 @@
 #include "field/mpm_passes.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_point_map.h"
+#include "field/mpm_setup_checks.h"
 #include "field/mpm_time_limit.h"
 #include "force.h"
+#include "group.h"
 #include "math/matrix.h"
+#include "modify.h"
 #include "update.h"
 
 #include <algorithm>
@@ -74,6 +78,35 @@ double MPMLedger::point_kinetic_energy() const
     if ((mask[i] & groupbit) && volume[i] > 0.0)
       sum += mass[i] * (v[i][0] * v[i][0] + v[i][1] * v[i][1] + (deep ? v[i][2] * v[i][2] : 0.0));
   return 0.5 * force->mvv2e * sum;
+}
+
+/** Are there fixes of LAMMPS, such as fix momentum, that may change velocities of points other than
+ *  by forces? */
+bool MPMLedger::finds_others() const
+{
+  using namespace FixConst;
+  for (auto *other : modify->get_fix_list()) {
+    const int when = modify->get_fix_mask(other);
+    if (!acts_on_atoms(*other) || utils::strmatch(other->style, "^mpm") ||
+        !(when & (INITIAL_INTEGRATE | POST_INTEGRATE | FINAL_INTEGRATE | END_OF_STEP)))
+      continue;
+    if (group->dynamic[other->igroup] || points_in_both(lmp, field.fix.groupbit, other->groupbit))
+      return true;
+  }
+  return false;
+}
+
+void MPMLedger::setup()
+{
+  if (!on) return;
+  kinetic_points = point_kinetic_energy();
+  disturbed = finds_others();
+}
+
+void MPMLedger::begin_step()
+{
+  const bool is_first = update->ntimestep == update->firststep + 1;    // perhaps without set-up
+  if (on && (disturbed || is_first)) kinetic_points = point_kinetic_energy();
 }
 
 void MPMLedger::account_for_nodes()

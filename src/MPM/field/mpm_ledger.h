@@ -49,11 +49,11 @@ class MPMLedger : protected Pointers, public MPMEnergies {
 
   MPMLedger(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), MPMEnergies(), field(field) {}
 
-  /** Start of a run. */
-  void setup()
-  {
-    if (on) kinetic_points = point_kinetic_energy();
-  }
+  /** Start of a run. Collective. */
+  void setup();
+  /** Before anything changes the velocities of points in a step: what other fixes and commands have
+   *  done to them since the last one is in no account. */
+  void begin_step();
   /** Called after the momentum equation, before node actions. */
   void nodes_solved()
   {
@@ -110,6 +110,7 @@ class MPMLedger : protected Pointers, public MPMEnergies {
  private:
   MPMField &field;
   double kinetic_points = 0.0;    // at the end of the last step
+  bool disturbed = false;         // other fixes may change velocities after it
   // [node][3] of node actions on owned nodes in this step; empty: none
   std::vector<double> impulses;
   // of forces in this step, at the mean of the old and the new velocity of the nodes
@@ -127,6 +128,7 @@ class MPMLedger : protected Pointers, public MPMEnergies {
     double place = 0.0, velocity = 0.0;
   } before_motion;
 
+  bool finds_others() const;
   double *impulse(const double *record);
   static bool change_by(double *record, const double *impulse, double change[3]);
   /** What the accounts say that nodes have gained. */

@@ -105,6 +105,7 @@ void MPMPlan::step()
   for (auto *field : fields)
     if (field->every) waits = field->every->wait() || waits;
   if (waits) return;
+  for (auto *field : fields) field->ledger.begin_step();
   run();
 }
 

@@ -9,6 +9,7 @@
 #include "watch/mpm_continuation.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
 #include "comm.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
@@ -27,18 +28,6 @@
 #include <map>
 
 using namespace LAMMPS_NS;
-
-/** Fixes that do something to atoms. Of those of this package that have a state the atom style
- *  tells; those with names in capitals are LAMMPS's own. */
-static bool acts(const Fix &fix)
-{
-  const std::string style = fix.style;
-  for (const char *output :
-       {"^ave/", "^print$", "^vector$", "^store", "^halt$", "^balance$", "^python$",
-        "^python/invoke$", "^property/atom", "^mpm/cells$", "^[A-Z]"})
-    if (utils::strmatch(style, output)) return false;
-  return !(fix.restart_global && utils::strmatch(style, "^mpm"));
-}
 
 void MPMContinuation::sums(double &mass, double &motion) const
 {
@@ -81,7 +70,9 @@ std::string MPMContinuation::state() const
   for (const auto *material : find_fixes<FixMPMMaterial>(lmp))
     text += fmt::format("material:{} {}\n", material->id, material->material->describe());
   for (const auto *fix : modify->get_fix_list())
-    if (acts(*fix)) text += fmt::format("fix:{} {}\n", fix->id, fix->style);
+    // of those of this package that have a state the atom style tells
+    if (acts_on_atoms(*fix) && !(fix->restart_global && utils::strmatch(fix->style, "^mpm")))
+      text += fmt::format("fix:{} {}\n", fix->id, fix->style);
   return text;
 }
 
