@@ -200,6 +200,21 @@ TEST(Restart, Continues)
   EXPECT_NEAR(heat_of_grains(run.whole), heat_of_grains(run.again), 1e-11);
 }
 
+// points have the temperature of their material, whatever the command set says
+SERIAL_TEST(BadInput, IsToldOfTemperaturesThatAreSet)
+{
+  const auto told = [](const std::string &before, const std::string &between) {
+    return times_said(replaced(falling(), "velocity grains", before + "velocity grains") +
+                          "run 2\n" + between + "run 2\nrun 2\n",
+                      "points have the temperature of their material");
+  };
+  EXPECT_EQ(told("", ""), 0);
+  EXPECT_EQ(told("set group block temperature 300\n", ""), 0);    // as in the material
+  EXPECT_EQ(told("set group block temperature 600\n", ""), 1);
+  EXPECT_EQ(told("", "set group block temperature 600\n"), 1);
+  EXPECT_EQ(told("", "set group grains temperature 600\n"), 0);
+}
+
 SERIAL_TEST(BadInput, IsRefused)
 {
   const std::string scene = falling();
@@ -207,6 +222,9 @@ SERIAL_TEST(BadInput, IsRefused)
   expect_error(replaced(scene, "fix hf grains", "fix hf all") + "run 1\n", "group of the grains");
   expect_error(replaced(scene, "fix hf grains heat/flow constant 500\n", "") + "run 1\n",
                "define a fix heat/flow");
+  expect_error(replaced(scene, "heat radius 50", "") + "run 1\n",
+               "no heat goes through contacts: give pair_coeff of pair style granular the keyword "
+               "heat");
   // atoms of molecular dynamics have no radius
   expect_error(replaced(scene, "diameter 0.02 density", "diameter 0 density") + "run 1\n",
                "none with atoms of molecular dynamics");

@@ -23,17 +23,45 @@
 #include "heat/mpm_grain_heat.h"
 
 #include "atom.h"
+#include "base/mpm_find_fixes.h"
+#include "base/mpm_pair_styles.h"
 #include "base/mpm_points.h"
+#include "comm.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
 #include "field/mpm_field.h"
 #include "fix.h"
+#include "force.h"
 #include "heat/mpm_conduction.h"
 #include "modify.h"
 #include "update.h"
 
+#include <algorithm>
+#include <cmath>
+
+// LAMMPS may be built without its package GRANULAR
+#if __has_include(<pair_granular.h>)
+#include <gran_sub_mod_heat.h>
+#include <granular_model.h>
+#include <pair_granular.h>
+#endif
+
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+/** Has a pair style a model for heat? Only data of its classes are used, which LAMMPS may lack. */
+static bool has_heat([[maybe_unused]] const MPMPairStyle &style)
+{
+#if __has_include(<pair_granular.h>)
+  if (style.name != "granular") return false;
+  auto *const pair = static_cast<PairGranular *>(style.pair);
+  return std::any_of(pair->models_list, pair->models_list + pair->nmodels, [](const auto *model) {
+    return model->heat_model && model->heat_model->name != "none";
+  });
+#else
+  return false;
+#endif
+}
 
 void MPMGrainHeat::init()
 {
@@ -70,6 +98,13 @@ void MPMGrainHeat::init()
                  "temperatures belong to fix mpm/heat: give it the group of the grains",
                  mover->id);
   }
+  const auto pairs = MPMPairStyle::all(*force);
+  if (std::none_of(pairs.begin(), pairs.end(), has_heat) &&
+      find_fixes(lmp, {"^wall/gran", "^add/heat$"}).empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/heat grains: no heat goes through contacts: give pair_coeff of pair style "
+               "granular the keyword heat, or drop the keyword grains");
+  warn_of_set();
   show();
 }
 
@@ -80,6 +115,28 @@ const FixMPMMaterial *MPMGrainHeat::material_of(int i) const
   for (const auto *field : fields)
     if (field->is_point(i)) return field->material_of(i);
   return nullptr;
+}
+
+/** Of the command set, which gives temperatures to the atoms, while the material has those of
+ *  points. */
+void MPMGrainHeat::warn_of_set()
+{
+  constexpr double ROUND_OFF = 1.0e-9;
+  bigint mine = 0, all;
+  for (int i = 0; i < atom->nlocal; i++) {
+    const auto *const material = material_of(i);
+    const int column = material ? material->temperature() : -1;
+    if (column < 0 || atom->temperature[i] == 0.0) continue;
+    const double T = material->history[i][column];
+    mine += std::fabs(atom->temperature[i] - T) > ROUND_OFF * std::fabs(T);
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
+  if (all && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/heat grains: {} points have the temperature of their material, not "
+                   "the one that they were given as atoms (set ... temperature), which is "
+                   "replaced: give that of the start in their fix mpm/material",
+                   all);
 }
 
 void MPMGrainHeat::show()

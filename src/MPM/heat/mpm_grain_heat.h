@@ -53,6 +53,7 @@ class MPMGrainHeat : protected Pointers {
   std::vector<double> energy;    // of points, for one field
 
   const FixMPMMaterial *material_of(int i) const;
+  void warn_of_set();
 };
 
 }    // namespace LAMMPS_NS
