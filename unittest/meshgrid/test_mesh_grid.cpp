@@ -509,8 +509,8 @@ SERIAL_TEST(MeshGrid, LostLoads)
   EXPECT_THAT(half[0], HasSubstr("traction on xhi acts on nothing in 43.8 % of its area"));
 }
 
-// LAMMPS takes the cutoff of communication from the lengths of bonds, as without the fix: two beads,
-// 0.42 apart, of two ranks
+// LAMMPS takes the cutoff of communication from the lengths of bonds, as without the fix: two
+// beads, 0.42 apart, of two ranks
 TEST(MeshGrid, BondsReachAcrossRanks)
 {
   const ScratchFile grid("grid.msh", gmsh(QUADS, {4, 4, 0}, [](double x, double y, double) {
