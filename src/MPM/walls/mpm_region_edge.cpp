@@ -66,8 +66,8 @@ void MPMRegionEdge::view_from(const double *place)
   view.planes.clear();
 }
 
-/** Is the surface of a part flat, with this normal at this place? At its edges it need go on in some
- *  directions only, that are not opposite. */
+/** Is the surface of a part flat, with this normal at this place? At edges of its own it goes on
+ *  only in some directions, not all of them opposite. */
 bool MPMRegionEdge::is_flat(const MPMRegionSurface &part, const double *from, const Place &place,
                             const double *n) const
 {
