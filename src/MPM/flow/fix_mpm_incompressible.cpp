@@ -11,6 +11,7 @@
 #include "base/mpm_integrator.h"
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
+#include "field/mpm_field.h"
 #include "field/mpm_setup_checks.h"
 #include "flow/mpm_flow_transfer.h"
 

@@ -13,6 +13,7 @@
 #include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "field/fix_mpm_material.h"
+#include "field/mpm_field.h"
 #include "field/mpm_physics.h"
 #include "field/mpm_setup_checks.h"
 #include "field/mpm_time_limit.h"
