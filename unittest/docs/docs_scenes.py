@@ -242,7 +242,7 @@ def scene_for(lines):
         before += "fix warm all mpm/heat\n"
     if "mpm/heat grains" in text:
         before += ("fix prop all property/atom temperature heatflow ghost yes\ngroup grains type 3\n"
-                   "fix warm grains heat/flow constant 500\n")
+                   "fix warm grains heat/flow constant 500\nfix sun grains add/heat constant 1.0\n")
     if heats or "mpm/heat" in text or "mpm/mesh/heat" in text:
         material = material.replace("\n", " thermal conducting 460 293 52\n")
     if mixture:

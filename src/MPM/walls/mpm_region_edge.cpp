@@ -35,17 +35,21 @@ MPMRegionEdge::MPMRegionEdge(const MPMRegionSurface &surface, const double *x, d
 
 MPMRegionEdge::Answer MPMRegionEdge::find(double limit, Place &place)
 {
-  constexpr double WIDER = 8.0;    // than a distance that is too short
+  constexpr double WIDER = 8.0, SAME = 1.0e-6;    // WIDER: than a distance that is too short
   nearest = limit;
   if (!all_convex()) {
-    const double more = bound(x);
-    if (more >= limit) return Answer::NONE;
+    const double more = bound(x, limit);
+    if (more >= (1.0 - SAME) * limit) return Answer::NONE;
     step = std::max(step, STEP * more);
   }
   const bool found = search_from(x);
   bool complete = found && all_convex();
   double inner = 0.0, outer = WIDER / STEP * step;
-  for (int budget = 1000; !complete && budget > 0; outer *= WIDER) {
+  // parts that have parts of their own search for their edges in each cell
+  const bool are_simple = std::all_of(order.begin(), order.end(), [](const auto *part) {
+    return part->parts.empty();
+  });
+  for (int budget = are_simple ? 500 : 20; !complete && budget > 0; outer *= WIDER) {
     outer = std::min(outer, nearest);
     if (!search_cells(inner, outer, budget)) break;
     complete = outer >= std::min(nearest, far);
@@ -105,6 +109,14 @@ bool MPMRegionEdge::is_flat(const MPMRegionSurface &part, const double *from, co
   return false;
 }
 
+/** Does a plane with this normal and height of y face one of the view, with nothing between? */
+bool MPMRegionEdge::is_facing(const double *n, double height) const
+{
+  return std::any_of(view.planes.begin(), view.planes.end(), [&](const Plane &other) {
+    return MathExtra::dot3(n, other.n) < -1.0 + 1.0e-6 && height + other.height > -step;
+  });
+}
+
 /** The surface of a part as a plane at the place that is nearest to y of those that are seen, and
  *  the distance of what is seen, far if it is nothing, negative in the part. A flat end that faces
  *  a plane of the view, with nothing between them, does not count, as that of a cylinder that is a
@@ -125,11 +137,7 @@ bool MPMRegionEdge::find_plane(const MPMRegionSurface &part, const double *y, Pl
     MathExtra::scale3(outward / length, n);
     double height = outward * place.distance;
     for (int d = 0; d < 3; d++) height += n[d] * (y[d] - view.from[d]);
-    const auto faces = [&](const Plane &other) {
-      return MathExtra::dot3(n, other.n) < -1.0 + 1.0e-6 && height + other.height > -step;
-    };
-    if (std::any_of(view.planes.begin(), view.planes.end(), faces) &&
-        is_flat(part, view.from, place, n))
+    if (is_facing(n, height) && (part.has_plane_faces() || is_flat(part, view.from, place, n)))
       continue;
     distance = std::min(distance, place.distance);
     const double way = sqrt(MathExtra::distsq3(y, place.x));
@@ -276,20 +284,51 @@ bool MPMRegionEdge::is_on_edge(const double *y) const
   });
 }
 
-/** A distance within which the set has no place. Behind planes of parts that are convex, no place
- *  of the set is further away. */
-double MPMRegionEdge::bound(const double *center)
+/** A distance within which the set has no place, or more than enough. Behind planes of parts that
+ *  are convex, no place of the set is further away. Out of a body with plane faces a place is behind
+ *  one of them, and then the same holds. */
+double MPMRegionEdge::bound(const double *center, double enough)
 {
   view_from(center);
+  return bound_by(0, center, enough);
+}
+
+/** The same by the parts from this one on, as seen now. */
+double MPMRegionEdge::bound_by(int first, const double *center, double enough)
+{
   double greatest = 0.0;
-  for (int k = 0; k < (int) order.size(); k++) {
+  for (int k = first; k < (int) order.size(); k++) {
     Plane plane;
     double distance;
     const bool is_seen = find_plane(*order[k], center, plane, distance);
+    if (distance <= greatest && !(is_seen && k < convex)) continue;
+    if (k >= convex && order[k]->has_plane_faces() && distance > 0.0 && distance < enough)
+      return std::max(greatest, bound_by_faces(k, center, enough));
     greatest = std::max(greatest, distance);
+    if (greatest >= enough) return greatest;
     if (is_seen && k < convex) go_behind(center, plane);
   }
   return greatest;
+}
+
+double MPMRegionEdge::bound_by_faces(int k, const double *center, double enough)
+{
+  const View from_here = view;
+  const std::vector<Place> faces = seen;
+  double least = enough;
+  for (const auto &face : faces) {
+    Plane plane;
+    MathExtra::sub3(view.from, face.x, plane.n);
+    if (face.distance >= least || !(face.distance > 0.0)) continue;
+    MathExtra::scale3(1.0 / face.distance, plane.n);
+    plane.height = face.distance;
+    for (int d = 0; d < 3; d++) plane.height += plane.n[d] * (center[d] - view.from[d]);
+    if (is_facing(plane.n, plane.height)) continue;
+    go_behind(center, plane);
+    least = std::min(least, std::max(face.distance, bound_by(k + 1, center, least)));
+    view = from_here;
+  }
+  return least;
 }
 
 double MPMRegionEdge::distance_of(const Cell &cell, bool farthest) const
@@ -315,7 +354,7 @@ bool MPMRegionEdge::search_cells(double inner, double outer, int &budget)
     if (cell.lower >= NEARER * std::min(nearest, outer)) break;
     if (budget-- <= 0) return false;
     const double reach = cell.half * sqrt((double) dim) + step;
-    if (bound(cell.center) > reach) continue;
+    if (bound(cell.center, 1.01 * reach) > reach) continue;
     search_from(cell.center);
     if (cell.half < THINNEST * std::max(cell.lower, step / STEP)) continue;
     for (int k = 0; k < (1 << dim); k++) {

@@ -71,7 +71,10 @@ class MPMRegionEdge {
   bool nearest_behind(const double *to, double *way);
   bool search_from(const double *start);
   bool is_on_edge(const double *y) const;
-  double bound(const double *center);
+  double bound(const double *center, double enough);
+  double bound_by(int first, const double *center, double enough);
+  double bound_by_faces(int k, const double *center, double enough);
+  bool is_facing(const double *n, double height) const;
   bool search_cells(double inner, double outer, int &budget);
   double distance_of(const Cell &, bool farthest) const;
 };

@@ -45,7 +45,9 @@ MPMRegionSurface::MPMRegionSurface(Region *region, int dim) :
     region(region), mesh(dynamic_cast<RegMPMMesh *>(region)), dim(dim),
     is_cone(strcmp(region->style, "cone") == 0),
     has_axis(is_cone || strcmp(region->style, "cylinder") == 0),
-    is_union(strcmp(region->style, "union") == 0), is_body(is_convex_body(region->style))
+    is_union(strcmp(region->style, "union") == 0), is_body(is_convex_body(region->style)),
+    is_plane(strcmp(region->style, "block") == 0 || strcmp(region->style, "prism") == 0 ||
+             strcmp(region->style, "plane") == 0)
 {
   if (mesh) mesh->need_distance();
   if (is_union || strcmp(region->style, "intersect") == 0)

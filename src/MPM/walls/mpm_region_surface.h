@@ -63,8 +63,9 @@ class MPMRegionSurface {
   Region *region;
   RegMPMMesh *mesh;
   int dim;
-  bool is_cone, has_axis, is_union, is_body;    // is_body: convex, or the outside of that
-  MPM_NS::SurfaceCells *cells = nullptr;        // of the mesh, if they are in use
+  bool is_cone, has_axis, is_union, is_body,
+      is_plane;                             // convex, or the outside of that; with plane faces
+  MPM_NS::SurfaceCells *cells = nullptr;    // of the mesh, if they are in use
   std::vector<int> left_out;    // ends of a cone that are left out, one after the other; -1: none
   std::vector<MPMRegionSurface> parts;    // of unions and intersections
   mutable std::vector<Place> places;
@@ -73,6 +74,7 @@ class MPMRegionSurface {
   /** Length that steps near x are made of: a distance, unless it is close to round-off. */
   static double scale_at(const double *x, double distance);
   /** Is the region a convex body, or the outside of one? */
+  bool has_plane_faces() const { return is_plane; }
   bool is_convex(bool inside) const { return is_body && (region->interior != 0) == inside; }
   bool match(const double *x) const;
   double find(const double *x, double far, bool in_cells) const;
