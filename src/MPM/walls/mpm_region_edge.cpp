@@ -35,15 +35,17 @@ MPMRegionEdge::MPMRegionEdge(const MPMRegionSurface &surface, const double *x, d
 
 MPMRegionEdge::Answer MPMRegionEdge::find(double limit, Place &place)
 {
-  constexpr double WIDER = 8.0, SAME = 1.0e-6;    // WIDER: than a distance that is too short
+  constexpr double WIDER = 8.0;    // than a distance that is too short
+  constexpr double SAME = 1.0e-6, ENOUGH = 1.0e-3;
   nearest = limit;
+  double least = 0.0;
   if (!all_convex()) {
-    const double more = bound(x, limit);
-    if (more >= (1.0 - SAME) * limit) return Answer::NONE;
-    step = std::max(step, STEP * more);
+    least = bound(x, limit);
+    if (least >= (1.0 - SAME) * limit) return Answer::NONE;
+    step = std::max(step, STEP * least);
   }
   const bool found = search_from(x);
-  bool complete = found && all_convex();
+  bool complete = found && (all_convex() || nearest <= (1.0 + ENOUGH) * least);
   double inner = 0.0, outer = WIDER / STEP * step;
   // parts that have parts of their own search for their edges in each cell
   const bool are_simple = std::all_of(order.begin(), order.end(), [](const auto *part) {
@@ -191,7 +193,6 @@ bool MPMRegionEdge::nearest_behind(const double *to, double *way)
                               }),
                planes.end());
   const int n = (int) planes.size();
-  double least = -1.0;
   const auto attempt = [&](const int *chosen, int m) {
     // multipliers of the planes: of n_k . n_l, by Cramer's rule
     double A[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, b[3] = {}, push[3];
@@ -201,36 +202,37 @@ bool MPMRegionEdge::nearest_behind(const double *to, double *way)
       b[k] = planes[chosen[k]].height + MathExtra::dot3(planes[chosen[k]].n, to);
     }
     const double determinant = MathExtra::det3(A);
-    if (!(determinant > 1.0e-12)) return;
+    if (!(determinant > 1.0e-12)) return false;
     double end[3] = {to[0], to[1], to[2]};
     for (int k = 0; k < m; k++) {
       double with_b[3][3];
       for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) with_b[i][j] = j == k ? b[i] : A[i][j];
       push[k] = MathExtra::det3(with_b) / determinant;
-      if (push[k] < 0.0) return;
+      if (push[k] < 0.0) return false;
       for (int d = 0; d < 3; d++) end[d] -= push[k] * planes[chosen[k]].n[d];
     }
     for (const auto &plane : planes)
-      if (plane.height + MathExtra::dot3(plane.n, end) > tolerance) return;
-    const double moved = MathExtra::distsq3(end, to);
-    if (least >= 0.0 && moved >= least) return;
-    least = moved;
+      if (plane.height + MathExtra::dot3(plane.n, end) > tolerance) return false;
     MathExtra::copy3(end, way);
+    return true;
   };
-  attempt(nullptr, 0);
-  for (int k = 0; k < n && least < 0.0; k++) {
-    attempt(&k, 1);
+  // the place is one, so that the first choice that fits is right
+  if (attempt(nullptr, 0)) return true;
+  for (int k = 0; k < n; k++)
+    if (attempt(&k, 1)) return true;
+  for (int k = 0; k < n; k++)
     for (int l = 0; l < k; l++) {
       const int two[] = {k, l};
-      attempt(two, 2);
+      if (attempt(two, 2)) return true;
+    }
+  for (int k = 0; k < n; k++)
+    for (int l = 0; l < k; l++)
       for (int i = 0; i < l; i++) {
         const int three[] = {k, l, i};
-        attempt(three, 3);
+        if (attempt(three, 3)) return true;
       }
-    }
-  }
-  return least >= 0.0;
+  return false;
 }
 
 /** Local search. Is what it finds an edge, and nearer than the nearest one so far? */
@@ -253,8 +255,10 @@ bool MPMRegionEdge::search_from(const double *start)
       double distance;
       if (find_plane(*order[k], y, plane, distance)) {
         go_behind(y, plane);
-        if (k < convex && order[k]->match(view.from) == (side > 0.0)) find_planes(*order[k], y);
-        planes.push_back(plane);
+        if (k < convex && order[k]->match(view.from) == (side > 0.0))
+          find_planes(*order[k], y);
+        else
+          planes.push_back(plane);
       } else if (distance > 0.0)
         return false;
     }
@@ -285,28 +289,30 @@ bool MPMRegionEdge::is_on_edge(const double *y) const
 }
 
 /** A distance within which the set has no place, or more than enough. Behind planes of parts that
- *  are convex, no place of the set is further away. Out of a body with plane faces a place is behind
- *  one of them, and then the same holds. */
+ *  are convex, no place of the set is further away, by the theorem of Pythagoras. A place outside
+ *  of a body with plane faces is behind one of them, and then the same holds. */
 double MPMRegionEdge::bound(const double *center, double enough)
 {
   view_from(center);
-  return bound_by(0, center, enough);
+  return sqrt(bound_by(0, center, enough * enough));
 }
 
-/** The same by the parts from this one on, as seen now. */
+/** The same by the parts from this one on, as seen now, of squares of distances. */
 double MPMRegionEdge::bound_by(int first, const double *center, double enough)
 {
-  double greatest = 0.0;
+  double greatest = 0.0, moved = 0.0;
   for (int k = first; k < (int) order.size(); k++) {
     Plane plane;
     double distance;
     const bool is_seen = find_plane(*order[k], center, plane, distance);
-    if (distance <= greatest && !(is_seen && k < convex)) continue;
-    if (k >= convex && order[k]->has_plane_faces() && distance > 0.0 && distance < enough)
-      return std::max(greatest, bound_by_faces(k, center, enough));
-    greatest = std::max(greatest, distance);
+    const double square = distance > 0.0 ? moved + distance * distance : 0.0;
+    if (k >= convex && order[k]->has_plane_faces() && square > greatest && square < enough)
+      return std::max(greatest, moved + bound_by_faces(k, center, enough - moved));
+    greatest = std::max(greatest, square);
     if (greatest >= enough) return greatest;
-    if (is_seen && k < convex) go_behind(center, plane);
+    if (!is_seen || k >= convex) continue;
+    go_behind(center, plane);
+    if (distance > 0.0) moved = square;
   }
   return greatest;
 }
@@ -318,14 +324,15 @@ double MPMRegionEdge::bound_by_faces(int k, const double *center, double enough)
   double least = enough;
   for (const auto &face : faces) {
     Plane plane;
+    const double square = face.distance * face.distance;
+    if (!(square < least && square > 0.0)) continue;
     MathExtra::sub3(view.from, face.x, plane.n);
-    if (face.distance >= least || !(face.distance > 0.0)) continue;
     MathExtra::scale3(1.0 / face.distance, plane.n);
     plane.height = face.distance;
     for (int d = 0; d < 3; d++) plane.height += plane.n[d] * (center[d] - view.from[d]);
     if (is_facing(plane.n, plane.height)) continue;
     go_behind(center, plane);
-    least = std::min(least, std::max(face.distance, bound_by(k + 1, center, least)));
+    least = std::min(least, square + bound_by(k + 1, center, least - square));
     view = from_here;
   }
   return least;
