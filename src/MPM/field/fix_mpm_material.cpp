@@ -104,8 +104,8 @@ void FixMPMMaterial::init()
   counts_stress = !modify->get_compute_by_style("^mpm/energy$").empty();
   if (material->is_of_surfaces()) check_surfaces();
   check_gas(lmp, *this);
-  if (is_new) check_history();
-  is_new = false;
+  if (!has_begun) check_history();
+  has_begun = true;
   assign_mass();
 
   // a mass that create_atoms left, together with a volume that was set, is easily overlooked
@@ -144,10 +144,11 @@ void FixMPMMaterial::check_surfaces() const
 void FixMPMMaterial::unpack_restart(int i, int nth)
 {
   FixMPMState::unpack_restart(i, nth);
-  is_new = false;
+  is_restored = true;
 }
 
-/** The history of points goes with the fix that it belongs to. */
+/** The history of points goes with the fix that it belongs to. Collective: a rank without points
+ *  has nothing from a restart file. */
 void FixMPMMaterial::check_history() const
 {
   static const double UNIT[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
@@ -156,7 +157,7 @@ void FixMPMMaterial::check_history() const
   const MPMPoints &points = *MPMPoints::get(atom);
   bigint n = 0, all;
   for (int i = 0; i < atom->nlocal; i++) {
-    if (!(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
+    if (is_restored || !(atom->mask[i] & groupbit) || !(atom->vfrac[i] > 0.0)) continue;
     bool is_deformed = false;
     for (int k = 0; k < 9; k++) is_deformed |= fabs(points.F[i][k] - UNIT[k]) > ROUND_OFF;
     for (int k = 0; k < 6; k++) is_deformed |= points.tau[i][k] != 0.0;

@@ -85,7 +85,8 @@ class FixMPMMaterial : public FixMPMState {
   bool counts_stress = false;    // is there a compute mpm/energy?
   std::vector<Exit> exits;       ///< for each range of the material
   void report_exits();
-  bool is_new = true;    // no run has begun, and there is no state from a restart file
+  bool has_begun = false;      // was there a run of this fix?
+  bool is_restored = false;    // have points of this rank their state from a restart file?
   void check_surfaces() const;
   void check_history() const;
   std::string names() const;
