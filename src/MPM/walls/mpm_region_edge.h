@@ -25,7 +25,8 @@ namespace LAMMPS_NS {
  *  If the parts are convex this is the place. Otherwise it depends on the start, and cells around x
  *  are searched, nearest first. A cell is empty if a part is further from its center than its
  *  corners; the others are halved, and local searches begin in them. Nothing is missed that is
- *  nearer by a twentieth, and thicker than a fiftieth of its distance. */
+ *  nearer by a twentieth, and thicker than a fiftieth of its distance, unless parts have parts of
+ *  their own, with which few cells are searched. */
 class MPMRegionEdge {
  public:
   using Place = MPMRegionSurface::Place;
