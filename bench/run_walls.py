@@ -25,8 +25,8 @@ ROUNDS = int(os.environ.get("ROUNDS", 3))
 RANKS = int(os.environ.get("RANKS", 1))
 SHORT, LONG = 100, 250    # steps
 TRIANGLES = {"mesh_12": None, "mesh_3528": 42, "mesh_100352": 224}
-CASES = [(wall, moves) for wall in ["face", "block", "cylinder"] + list(TRIANGLES) for moves in ("no", "yes")
-         if (wall, moves) != ("face", "yes")]
+CASES = [(wall, moves) for wall in ["face", "block", "cylinder", "hole"] + list(TRIANGLES)
+         for moves in ("no", "yes") if moves == "no" or wall not in ("face", "hole")]
 
 
 def height(x, y):

@@ -11,6 +11,7 @@
 #include "math_extra.h"
 #include "mpm_lammps.h"
 
+#include "mesh/surface_cells.h"
 #include "walls/mpm_region_surface.h"
 
 using namespace MPM_TEST;
@@ -448,15 +449,18 @@ TEST(ThinRegions, ThatMoveAreReportedInShortRuns)
 
 /* ------------------------------------------------ unions, intersections, cones */
 
-/** The surface of the region "it" at places in and around a box from -2 to 2. */
+/** The surface of the region "it" at places in and around a box from -2 to 2. cells: size of cells
+ *  of distances. */
 void each_place(const std::string &regions,
-                const std::function<void(const MPMRegionSurface &surface, const double *x)> &f)
+                const std::function<void(const MPMRegionSurface &surface, const double *x)> &f,
+                double cells = 0.25)
 {
   Scene run(space("lj", "f f f", "-2 2 -2 2 -2 2") + regions);
   Region *const it = run.lmp->domain->get_region_by_id("it");
   ASSERT_NE(it, nullptr);
   run.lmp->init();
-  const MPMRegionSurface surface(it, 3);
+  MPMRegionSurface surface(it, 3);
+  surface.use_cells(cells);
   EXPECT_FALSE(surface.is_open());
   for (int k = 0; k < 2000; k++) {
     const double x[3] = {std::remainder(0.37 * k, 4.8), std::remainder(0.61803 * k, 4.7),
@@ -675,6 +679,34 @@ TEST(Surfaces, Crescent)
                     if (two > r2 && std::hypot(y2, z2) > r1) exact = std::min(exact, two - r2);
                     EXPECT_NEAR(d, exact, 1.0e-5) << order << " " << x[1] << " " << x[2];
                   });
+}
+
+// Distances of composed regions that are interpolated in cells are those of the search. Without
+// edges nearby they are so to single precision, as a plane is exact.
+TEST(Surfaces, InCells)
+{
+  constexpr double SIZE = 0.1;
+  const std::string plate = "region a block -3 3 -3 3 -0.4871 0.4871\n";
+  for (const std::string other :
+       {"cylinder z 0 0 0.7 -0.4871 0.4871 side out\nregion it intersect 2 a b\n",
+        "sphere 0.5 0.2 0.3 0.9\nregion it union 2 a b side out\n"}) {
+    int between = 0, exact = 0;
+    each_place(
+        plate + "region b " + other,
+        [&](const MPMRegionSurface &it, const double *x) {
+          const double d = it.distance(x, 1.0), in_cells = it.distance_in_cells(x, 1.0);
+          EXPECT_NEAR(in_cells, d, 2.0 * MPM_NS::SurfaceCells::TOLERANCE * SIZE);
+          EXPECT_LE(std::fabs(in_cells), 1.0);
+          const double near = it.distance_in_cells(x, 0.3);
+          EXPECT_NEAR(near, std::max(-0.3, std::min(d, 0.3)),
+                      2.0 * MPM_NS::SurfaceCells::TOLERANCE * SIZE);
+          between += d != in_cells;
+          exact += std::fabs(d - in_cells) < 1.0e-6 && std::fabs(d) < 1.0;
+        },
+        SIZE);
+    EXPECT_GT(measured("places", between), 1000) << other;
+    EXPECT_GT(exact, 500) << other;
+  }
 }
 
 // Intersections and unions of two to four random regions, many of which are not convex: no place of

@@ -21,8 +21,20 @@ static constexpr double SAME = 0.95;      // least cosine between a gradient and
 static constexpr double FLAT = 1.0e-3;    // largest component along z if only a section counts
 static constexpr std::size_t MOST = 1 << 14;    // bricks in memory
 
+SurfaceCells::SurfaceCells(Distance exact, const Point &origin, double size, bool flat) :
+    exact(std::move(exact)), origin(origin), size(size), per_size(1.0 / size), flat(flat)
+{
+}
+
 SurfaceCells::SurfaceCells(const SurfaceMesh &mesh, double size, bool flat) :
-    mesh(mesh), size(size), per_size(1.0 / size), flat(flat)
+    SurfaceCells(
+        [&mesh](const Point &x, double limit, Point *gradient) {
+          const double bound = mesh.bound(x);
+          if (std::fabs(bound) > limit) return bound;
+          Point closest;
+          return gradient ? mesh.distance_and_normal(x, *gradient) : mesh.distance(x, closest);
+        },
+        mesh.lo, size, flat)
 {
 }
 
@@ -62,9 +74,8 @@ const SurfaceCells::Corner &SurfaceCells::corner(Brick &brick, const int64_t *in
   if (brick.known[k]) return c;
   brick.known[k] = 1;
   Point x = {0.0, 0.0, height};
-  for (int d = 0; d < (flat ? 2 : 3); d++) x[d] = mesh.lo[d] + size * (SIDE * index[d] + at[d]);
-  double distance = mesh.bound(x);
-  if (std::fabs(distance) <= FARTHEST * size) distance = mesh.distance_and_normal(x, gradient);
+  for (int d = 0; d < (flat ? 2 : 3); d++) x[d] = origin[d] + size * (SIDE * index[d] + at[d]);
+  double distance = exact(x, FARTHEST * size, &gradient);
   if (std::fabs(distance) > FARTHEST * size)
     distance = std::copysign(std::numeric_limits<double>::infinity(), distance);
   c = {(float) (distance * per_size), (float) gradient[0], (float) gradient[1],
@@ -114,11 +125,12 @@ SurfaceCells::Kind SurfaceCells::judge(Brick &brick, const int64_t *index, const
   if (!(length > 0.0)) return ROUGH;
   for (int k = 0; k < n; k++)
     if (!(dot(mean, gradients[k]) >= SAME * length)) return ROUGH;
-  Point x = {0.0, 0.0, height}, closest;
+  Point x = {0.0, 0.0, height};
   for (int d = 0; d < (flat ? 2 : 3); d++)
-    x[d] = mesh.lo[d] + size * (SIDE * index[d] + cell[d] + 0.5);
+    x[d] = origin[d] + size * (SIDE * index[d] + cell[d] + 0.5);
   const double middle[3] = {0.5, 0.5, 0.5};
-  const double error = size * blend(brick, cell, middle)[0] - mesh.distance(x, closest);
+  const double error =
+      size * blend(brick, cell, middle)[0] - exact(x, (FARTHEST + 1.0) * size, nullptr);
   return std::fabs(error) <= TOLERANCE * size ? SMOOTH : ROUGH;
 }
 
@@ -133,7 +145,7 @@ SurfaceCells::Answer SurfaceCells::find(const Point &x, double &distance, Point 
   int cell[3] = {0, 0, 0};
   double t[3] = {0.0, 0.0, 0.0};
   for (int d = 0; d < (flat ? 2 : 3); d++) {
-    const double at = (x[d] - mesh.lo[d]) * per_size;
+    const double at = (x[d] - origin[d]) * per_size;
     if (!(std::fabs(at) < 1.0e9)) return UNKNOWN;
     auto whole = (int64_t) at;
     if ((double) whole > at) whole--;

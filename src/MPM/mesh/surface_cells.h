@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <unordered_map>
 
@@ -33,7 +34,14 @@ class SurfaceCells {
   /** Largest error of a distance, in cells, as found at the center. */
   static constexpr double TOLERANCE = 0.01;
 
-  /** size: of cells; flat: distances along z do not count, and all places have the same z. */
+  /** Signed distance of x, and its gradient (if not null), a unit vector, or zero where it is not
+   *  known. The result may be any number beyond the limit if the distance is. */
+  using Distance = std::function<double(const SurfaceMesh::Point &x, double limit,
+                                        SurfaceMesh::Point *gradient)>;
+
+  /** origin: a corner of cells; size: of cells; flat: distances along z do not count, and all
+   *  places have the same z. */
+  SurfaceCells(Distance, const SurfaceMesh::Point &origin, double size, bool flat);
   SurfaceCells(const SurfaceMesh &, double size, bool flat);
 
   /** Farthest places from the surface for which there are cells, in cells. */
@@ -56,7 +64,8 @@ class SurfaceCells {
     std::array<Kind, SIDE * SIDE * SIDE> kinds;
   };
 
-  const SurfaceMesh &mesh;
+  const Distance exact;
+  const SurfaceMesh::Point origin;
   const double size, per_size;
   const bool flat;
   std::unordered_map<uint64_t, std::unique_ptr<Brick>> bricks;

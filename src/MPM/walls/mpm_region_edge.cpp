@@ -35,8 +35,8 @@ MPMRegionEdge::MPMRegionEdge(const MPMRegionSurface &surface, const double *x, d
 
 MPMRegionEdge::Answer MPMRegionEdge::find(double limit, Place &place)
 {
-  constexpr double WIDER = 8.0;    // than a distance that is too short
-  constexpr double SAME = 1.0e-6, ENOUGH = 1.0e-3;
+  constexpr double WIDER = 8.0;                       // than a distance that is too short
+  constexpr double SAME = 3.0e-5, ENOUGH = 1.0e-3;    // a bound is less by a few STEP
   nearest = limit;
   double least = 0.0;
   if (!all_convex()) {
@@ -72,10 +72,24 @@ void MPMRegionEdge::view_from(const double *place)
   view.planes.clear();
 }
 
-/** Is the surface of a part flat, with this normal at this place? At edges of its own it goes on
- *  only in some directions, not all of them opposite. */
-bool MPMRegionEdge::is_flat(const MPMRegionSurface &part, const double *from, const Place &place,
-                            const double *n) const
+/** Is the surface of a part flat, with this normal at this place? */
+bool MPMRegionEdge::is_flat(const MPMRegionSurface &part, const Place &place, const double *n) const
+{
+  constexpr double ROUND_OFF = 1.0e-12;
+  if (part.is_plane) return true;
+  if (part.has_axis)
+    for (int d = 0; d < 3; d++)
+      if (fabs(n[d]) > 1.0 - ROUND_OFF) {
+        if (part.flat[d] < 0) part.flat[d] = goes_on_flat(part, place, n);
+        return part.flat[d];
+      }
+  return goes_on_flat(part, place, n);
+}
+
+/** Is it flat around? At edges of its own it goes on only in some directions, not all of them
+ *  opposite. */
+bool MPMRegionEdge::goes_on_flat(const MPMRegionSurface &part, const Place &place,
+                                 const double *n) const
 {
   constexpr int DIRECTIONS = 8;
   double off = std::max(1.0e3 * step, 1.0e-5 * MPMRegionSurface::size_of(x));
@@ -94,7 +108,7 @@ bool MPMRegionEdge::is_flat(const MPMRegionSurface &part, const double *from, co
   const auto goes_on = [&](double angle) {
     double beside[3];
     for (int d = 0; d < 3; d++)
-      beside[d] = from[d] + off * (cos(angle) * along[d] + (dim - 2) * sin(angle) * across[d]);
+      beside[d] = view.from[d] + off * (cos(angle) * along[d] + (dim - 2) * sin(angle) * across[d]);
     part.find_places(beside, far);
     return std::any_of(part.places.begin(), part.places.end(), [&](const auto &other) {
       double way[3];
@@ -139,8 +153,7 @@ bool MPMRegionEdge::find_plane(const MPMRegionSurface &part, const double *y, Pl
     MathExtra::scale3(outward / length, n);
     double height = outward * place.distance;
     for (int d = 0; d < 3; d++) height += n[d] * (y[d] - view.from[d]);
-    if (is_facing(n, height) && (part.has_plane_faces() || is_flat(part, view.from, place, n)))
-      continue;
+    if (is_facing(n, height) && is_flat(part, place, n)) continue;
     distance = std::min(distance, place.distance);
     const double way = sqrt(MathExtra::distsq3(y, place.x));
     if (way >= nearest_to_y) continue;
@@ -152,24 +165,6 @@ bool MPMRegionEdge::find_plane(const MPMRegionSurface &part, const double *y, Pl
   return nearest_to_y < far;
 }
 
-/** The same of a convex part, seen from inside, where all surfaces that meet at an edge of its own
- *  are seen: all of them are planes that the part is behind. */
-void MPMRegionEdge::find_planes(const MPMRegionSurface &part, const double *y)
-{
-  const double *const from = view.from;
-  part.find_places(from, far);
-  for (const auto &place : part.places) {
-    Plane plane;
-    MathExtra::sub3(place.x, from, plane.n);
-    const double length = MathExtra::len3(plane.n);
-    if (!(length > 0.99 * place.distance && length > 0.0)) continue;
-    MathExtra::scale3(1.0 / length, plane.n);
-    plane.height = -place.distance;
-    for (int d = 0; d < 3; d++) plane.height += plane.n[d] * (y[d] - from[d]);
-    planes.push_back(plane);
-  }
-}
-
 void MPMRegionEdge::go_behind(const double *y, const Plane &plane)
 {
   double height = plane.height + step;
@@ -177,6 +172,27 @@ void MPMRegionEdge::go_behind(const double *y, const Plane &plane)
   if (height > 0.0)
     for (int d = 0; d < 3; d++) view.from[d] -= height * plane.n[d];
   view.planes.push_back(plane);
+}
+
+/** The same for a convex part, from whose inside all of its surfaces are seen, as those that meet
+ *  at an edge of its own: all of them are planes that the part is behind. */
+void MPMRegionEdge::go_into(const MPMRegionSurface &part, const double *y, const Plane &plane)
+{
+  go_behind(y, plane);
+  const double *const from = view.from;
+  if (part.match(from) != (side > 0.0)) return;
+  view.planes.pop_back();
+  part.find_places(from, far);
+  for (const auto &place : part.places) {
+    Plane face;
+    MathExtra::sub3(place.x, from, face.n);
+    const double length = MathExtra::len3(face.n);
+    if (!(length > 0.99 * place.distance && length > 0.0)) continue;
+    MathExtra::scale3(1.0 / length, face.n);
+    face.height = -place.distance;
+    for (int d = 0; d < 3; d++) face.height += face.n[d] * (y[d] - from[d]);
+    view.planes.push_back(face);
+  }
 }
 
 /** Way from y to the place nearest to y + to that is behind all planes, in no more than three of
@@ -249,19 +265,18 @@ bool MPMRegionEdge::search_from(const double *start)
     const double length = MathExtra::len3(q);
     for (int d = 0; d < 3; d++) q[d] = y[d] + (length > 0.0 ? step / length * q[d] : 0.0);
     view_from(q);
-    planes.clear();
     for (int k = 0; k < (int) order.size(); k++) {
       Plane plane;
       double distance;
       if (find_plane(*order[k], y, plane, distance)) {
-        go_behind(y, plane);
-        if (k < convex && order[k]->match(view.from) == (side > 0.0))
-          find_planes(*order[k], y);
+        if (k < convex)
+          go_into(*order[k], y, plane);
         else
-          planes.push_back(plane);
+          go_behind(y, plane);
       } else if (distance > 0.0)
         return false;
     }
+    planes = view.planes;
     for (const auto &plane : planes) out = std::max(out, plane.height);
     // where an edge bends, its places are about as near, and the last steps are short
     if (out <= converged && round >= ROUNDS) break;
@@ -306,12 +321,12 @@ double MPMRegionEdge::bound_by(int first, const double *center, double enough)
     double distance;
     const bool is_seen = find_plane(*order[k], center, plane, distance);
     const double square = distance > 0.0 ? moved + distance * distance : 0.0;
-    if (k >= convex && order[k]->has_plane_faces() && square > greatest && square < enough)
+    if (k >= convex && order[k]->is_plane && square > greatest && square < enough)
       return std::max(greatest, moved + bound_by_faces(k, center, enough - moved));
     greatest = std::max(greatest, square);
     if (greatest >= enough) return greatest;
     if (!is_seen || k >= convex) continue;
-    go_behind(center, plane);
+    go_into(*order[k], center, plane);
     if (distance > 0.0) moved = square;
   }
   return greatest;

@@ -64,11 +64,11 @@ class MPMRegionEdge {
 
   bool all_convex() const { return convex == (int) order.size(); }
   void view_from(const double *);
-  bool is_flat(const MPMRegionSurface &part, const double *from, const Place &,
-               const double *n) const;
+  bool is_flat(const MPMRegionSurface &part, const Place &, const double *n) const;
+  bool goes_on_flat(const MPMRegionSurface &part, const Place &, const double *n) const;
   bool find_plane(const MPMRegionSurface &part, const double *y, Plane &, double &distance);
-  void find_planes(const MPMRegionSurface &part, const double *y);
   void go_behind(const double *y, const Plane &);
+  void go_into(const MPMRegionSurface &part, const double *y, const Plane &);
   bool nearest_behind(const double *to, double *way);
   bool search_from(const double *start);
   bool is_on_edge(const double *y) const;

@@ -22,6 +22,7 @@
 #include "walls/mpm_region_surface.h"
 
 #include "math_extra.h"
+#include "mesh/surface_cells.h"
 #include "region.h"
 #include "walls/mpm_region_edge.h"
 #include "walls/region_mpm_mesh.h"
@@ -31,6 +32,7 @@
 #include <cstring>
 
 using namespace LAMMPS_NS;
+using namespace MPM_NS;
 
 static bool is_convex_body(const char *style)
 {
@@ -155,6 +157,23 @@ void MPMRegionSurface::use_cells(double size)
 {
   if (mesh) cells = &mesh->cells_of_size(size);
   for (auto &part : parts) part.use_cells(size);
+  if (parts.empty() || region->dynamic_check()) return;
+  cells_of_all = std::make_shared<SurfaceCells>(
+      [this, size](const SurfaceMesh::Point &x, double limit, SurfaceMesh::Point *gradient) {
+        if (gradient) normal(x.data(), limit, 1.0e-4 * size, gradient->data());
+        return distance(x.data(), 1.001 * limit);
+      },
+      SurfaceMesh::Point{}, size, dim == 2);
+}
+
+double MPMRegionSurface::distance_in_cells(const double *x, double far) const
+{
+  double d;
+  if (!cells_of_all) return distance(x, far);
+  const auto answer = cells_of_all->find({x[0], x[1], x[2]}, d, nullptr);
+  if (answer == SurfaceCells::UNKNOWN || (answer == SurfaceCells::FAR && fabs(d) < far))
+    return distance(x, far);
+  return fabs(d) < far ? d : std::copysign(far, d);
 }
 
 bool MPMRegionSurface::has(const double *x) const

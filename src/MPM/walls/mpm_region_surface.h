@@ -12,6 +12,7 @@
 #include "region.h"
 
 #include <array>
+#include <memory>
 #include <vector>
 
 namespace MPM_NS {
@@ -37,8 +38,12 @@ class MPMRegionSurface {
   double distance(const double *x, double far) const { return find(x, far, true); }
 
   /** Distances and normals of a mesh come from SurfaceCells of this size from now on, where these
-   *  know them. This is much faster, and wrong by at most 0.01 of the size. */
+   *  know them. This is much faster, and wrong by at most 0.01 of the size. The same for
+   *  distance_in_cells() of a region that is made of others and does not move. */
   void use_cells(double size);
+
+  /** The same as distance(), but it may be that of cells. */
+  double distance_in_cells(const double *x, double far) const;
 
   /** Is x in the region, or on its surface? It agrees with the sign of the distance. */
   bool has(const double *x) const;
@@ -66,6 +71,9 @@ class MPMRegionSurface {
   bool is_cone, has_axis, is_union, is_body,
       is_plane;                             // convex, or the outside of that; with plane faces
   MPM_NS::SurfaceCells *cells = nullptr;    // of the mesh, if they are in use
+  std::shared_ptr<MPM_NS::SurfaceCells> cells_of_all;    // parts
+  // of a cylinder or cone: are its surfaces with normals along the axes x, y, z flat?
+  mutable std::array<int, 3> flat = {-1, -1, -1};    // -1: not known yet
   std::vector<int> left_out;    // ends of a cone that are left out, one after the other; -1: none
   std::vector<MPMRegionSurface> parts;    // of unions and intersections
   mutable std::vector<Place> places;
@@ -74,7 +82,6 @@ class MPMRegionSurface {
   /** Length that steps near x are made of: a distance, unless it is close to round-off. */
   static double scale_at(const double *x, double distance);
   /** Is the region a convex body, or the outside of one? */
-  bool has_plane_faces() const { return is_plane; }
   bool is_convex(bool inside) const { return is_body && (region->interior != 0) == inside; }
   bool match(const double *x) const;
   double find(const double *x, double far, bool in_cells) const;

@@ -288,7 +288,7 @@ MPMDistanceFrom MPMWall::distance_from_region(double dt) const
 {
   if (!region_moves())
     return [this](const double *x, double cutoff) {
-      return surface->distance(x, cutoff);
+      return surface->distance_in_cells(x, cutoff);
     };
   return [this, dt](const double *x, double cutoff) {
     double y[3], v[3];

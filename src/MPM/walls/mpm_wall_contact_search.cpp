@@ -61,7 +61,7 @@ void MPMWallContactSearch::find_contacts(MPMWallNodes &list, double dt, double t
     for (const auto &line : face.lines) line.mark_blocks(near);
     for (const auto &column : face.columns)
       if (column.node[0] >= 0) near[column.node[0] / NODES_PER_BLOCK] = 1;
-    gap.map(field, near, true, (face.cut ? 2.0 : 1.0) * seen, face.distance(*domain));
+    gap.map(field, near, (face.cut ? 2.0 : 1.0) * seen, face.distance(*domain));
     for (auto &line : face.lines) line.touched = sums(line).touches(face.contact, tolerance);
     for (auto &column : face.columns)
       column.touched =
@@ -81,7 +81,7 @@ void MPMWallContactSearch::map_region(MPMWallNodes &list, double dt)
   for (const auto &node : list.nodes) near[node.node / NODES_PER_BLOCK] = 1;
   list.crossings.mark_blocks(near);
   if (!wall.region_moves()) wall.region->prematch();
-  gap.map(field, near, wall.region->nregion == 1, 2.45 * seen, wall.distance_from_region(dt));
+  gap.map(field, near, 2.45 * seen, wall.distance_from_region(dt));
 }
 
 /** Lines of a region that moves and holds act as soon as nodes on both sides of the surface see
@@ -334,8 +334,7 @@ void MPMWallContactSearch::find_approaches(MPMWallNodes &list, double dt)
     std::vector<char> near;
     Lines lines = lines_in_front(list, face, away_if_near, near);
     leave_out_acting(list, face, lines);
-    gap.map(field, near, face || wall.region->nregion == 1,
-            (face ? 2.0 : 2.45) * seen + MPMWall::COMES_FROM + MORE, away, more);
+    gap.map(field, near, (face ? 2.0 : 2.45) * seen + MPMWall::COMES_FROM + MORE, away, more);
     for (const auto &[key, nearest] : lines) {
       MPMApproach found = {};
       double x[3];

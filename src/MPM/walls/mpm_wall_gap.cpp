@@ -119,7 +119,7 @@ double MPMWallGap::farthest(const MPMField &field, double more)
 /** Points that no node at the wall sees are left out, most of them by the distance of the middle of
  *  their cell: the distance of another place is less by no more than their distance from
  *  each other. The domains of points with a size can reach far. */
-void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth, double reach,
+void MPMWallGap::map(MPMField &field, const std::vector<char> &near, double reach,
                      const MPMDistanceFrom &away, double more)
 {
   constexpr int CHUNK = 8;
@@ -143,11 +143,10 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
   enum Sight : char { NOT_KNOWN, IN_SIGHT, OUT_OF_SIGHT };
   const int side = field.grid.side, count = side + 2, layers = cubes ? count : 1;
   const double radius = 0.5 * std::sqrt((double) lattice.dim) * h;
-  const bool looks = smooth && !sized;
-  std::vector<char> cells(looks ? count * count * layers : 0);
+  std::vector<char> cells(sized ? 0 : count * count * layers);
   double corner[3] = {0.0, 0.0, 0.0};
   const auto out_of_sight = [&](const double *place) {
-    if (!looks) return false;
+    if (sized) return false;
     const double at[3] = {(place[0] - corner[0]) * per_h, (place[1] - corner[1]) * per_h,
                           cubes ? (place[2] - corner[2]) * per_h : 0.5};
     const int k[3] = {(int) at[0], (int) at[1], (int) at[2]};
@@ -170,7 +169,7 @@ void MPMWallGap::map(MPMField &field, const std::vector<char> &near, bool smooth
           return slot >= 0 && near[slot];
         }))
       return;
-    if (looks) {
+    if (!sized) {
       const int first[3] = {block.b[0] * side - 1, block.b[1] * side - 1,
                             cubes ? block.b[2] * side - 1 : 0};
       lattice.node_position(first, corner);

@@ -62,11 +62,11 @@ class MPMWallGap {
 
   /** Finds the sums at the nodes of the blocks [slot] that are marked in near (and may find
    *  others). away: distance of a position from the wall, positive on the side of the material.
-   *  smooth: the distance changes by no more than the position. reach: greatest distance that a
-   *  node of the wall sees (node spacings). more: distance beyond the range of nodes at the wall up
+   *  It changes by no more than the position. reach: greatest distance that a node of the wall sees
+   *  (node spacings). more: distance beyond the range of nodes at the wall up
    *  to which distances are needed (node spacings). Collective. */
-  void map(MPMField &, const std::vector<char> &near, bool smooth, double reach,
-           const MPMDistanceFrom &away, double more = 0.0);
+  void map(MPMField &, const std::vector<char> &near, double reach, const MPMDistanceFrom &away,
+           double more = 0.0);
 
   /** Distances beyond this one are not needed. */
   static double farthest(const MPMField &, double more = 0.0);
