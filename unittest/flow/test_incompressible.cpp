@@ -793,10 +793,27 @@ TEST(Block, RanksAndRestart)
     EXPECT_TRUE(identical(again.whole.gather(), again.again.gather()));
     const double spread = again.whole.fix("w")->compute_vector(14);
     EXPECT_NE(spread, 0.0);
-    EXPECT_NEAR(again.again.fix("w")->compute_vector(14) / spread, 1.0, 1e-12);
+    EXPECT_EQ(again.again.fix("w")->compute_vector(14), spread);
     EXPECT_NEAR(run.parallel.fix("w")->compute_vector(14) / run.serial.fix("w")->compute_vector(14),
                 1.0, 1e-12);
   }
+}
+
+// velocities that points are given between a run and the command write_restart are as new to a run
+// that continues from the file, and to the run that wrote it, as without a file
+SERIAL_TEST(Block, GetsVelocitiesBeforeRestart)
+{
+  const std::string fixes = "fix w all mpm/incompressible 0.1 1000\nfix g all gravity 9.81 vector "
+                            "0 -1 0\ntimestep 0.005\n",
+                    next = "run 5\n";
+  const auto first = plane("si", "f f", "0 1 0 1", 1, 0.02) +
+      "region water block INF 0.4 0 0.61 INF INF\ncreate_points 1 region water spacing 0.05\n" +
+      fixes + "run 5\nvelocity all set 0.5 0 0 sum yes\n";
+  const ScratchFile file("given");
+  Scene without(first + next), whole(first + "write_restart " + file.name + "\n" + next),
+      again("read_restart " + file.name + "\nneighbor 0.02 bin\n" + fixes + next);
+  EXPECT_TRUE(identical(without.gather(), whole.gather()));
+  EXPECT_TRUE(identical(whole.gather(), again.gather()));
 }
 
 SERIAL_TEST(Incompressible, BadInput)

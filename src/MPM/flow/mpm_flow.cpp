@@ -228,6 +228,7 @@ void MPMFlow::make_plan()
 
 void MPMFlow::begin_step()
 {
+  running = true;
   const bool leapfrog = is_leapfrog();
   begins = !continues() || is_new;
   if (begins && leapfrog) dt_before = 0.0;
@@ -546,12 +547,19 @@ double MPMFlow::sum_over_points(double **values, double &size) const
   return all[0];
 }
 
-void MPMFlow::end_run()
+/** Notes the sums by which the next run sees that velocities or forces are others. */
+void MPMFlow::find_sums()
 {
   double size;
-  if (is_new) return;
   sum_before = sum_over_points(atom->v, size);
   force_before = sum_over_points(atom->f, size);
+}
+
+void MPMFlow::end_run()
+{
+  running = false;
+  if (is_new) return;
+  find_sums();
   report_gain();
 }
 
@@ -707,13 +715,21 @@ double MPMFlow::limit_of_motion(double dt, tagint &tag) const
   return dt;
 }
 
-std::vector<double> MPMFlow::restart_data() const
+/* ----------------------------------------------------------------------
+   Between runs, forces are no longer those of points: the command write_restart gives points to
+   other processes without their forces. Velocities may be others by then, which the next run has to
+   see. So what the end of the last run has left counts.
+------------------------------------------------------------------------- */
+
+std::vector<double> MPMFlow::restart_data()
 {
   tagint tag;
-  double mine = stable_dt(tag), limit;
+  if (running) find_sums();
+  double mine = running ? stable_dt(tag) : limit_before, limit;
   MPI_Allreduce(&mine, &limit, 1, MPI_DOUBLE, MPI_MIN, world);
+  keep_totals(world, &spreading_energy, 1);
+  keep_totals(world, &energy.work, 1);
   const auto last = sum_last_step(true);
-  double size;
   std::vector<double> state = {dt_before,
                                limit,
                                last[1],
@@ -722,8 +738,8 @@ std::vector<double> MPMFlow::restart_data() const
                                results.halvings,
                                0.0,
                                0.0,
-                               is_new ? sum_before : sum_over_points(atom->v, size),
-                               is_new ? force_before : sum_over_points(atom->f, size),
+                               sum_before,
+                               force_before,
                                (double) was_leapfrog};
   const auto energies = energy.state(last[4], last[5], last[6]);
   state.insert(state.end(), energies.begin(), energies.end());

@@ -73,9 +73,9 @@ class MPMFlow : protected Pointers {
   double energy_of_spreading() const { return spreading_energy; }
 
   /** State for restart files: duration of the last step, limit of the next one with its forces, the
-   *  share that points keep, halvings, a sum over velocities, motion of regions, and gas; complete
-   *  on the first rank. Collective. */
-  std::vector<double> restart_data() const;
+   *  share that points keep, halvings, sums over velocities and forces, motion of regions, and gas;
+   *  complete on the first rank. Collective. */
+  std::vector<double> restart_data();
   /** Takes what restart_data() has given, as the fix with this ID gets it. */
   void restart(const std::string &id, const char *buf);
   double memory_usage() const
@@ -104,6 +104,7 @@ class MPMFlow : protected Pointers {
   // and not as those of a flow that goes on?
   bool is_new = true, begins = true;
   bool first_of_run = true;
+  bool running = false;        // is it in a run, after the start of the first step?
   bool was_leapfrog = true;    // is_leapfrog() in the last step
   // last stable_dt() with forces; after a restart, of all ranks; 0: none
   mutable double limit_before = 0.0;
@@ -139,6 +140,7 @@ class MPMFlow : protected Pointers {
   void fit_gradients(const MPMFlowPoints &);
   void find_start();
   double sum_over_points(double **values, double &size) const;
+  void find_sums();
   bool continues();
   void check_speed();
 };
