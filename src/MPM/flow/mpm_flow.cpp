@@ -55,6 +55,9 @@ static constexpr double GAIN = 0.03, GAIN_OF_SOLIDS = 0.15, MUCH_GAIN = 0.1;
 // tolerance of the pressure, which leaves about this share of forces, is larger: that of velocities
 // of 0.0014 (g h)^(1/2), and of waves of 0.01 of a spacing. Points of a fluid at rest creep by less
 static constexpr double IN_PLAY = 1.0e-6;
+// the same of points next to regions, whose surfaces they follow in steps of their own size: at the
+// start of a run they settle and spread by less than this, in spacings
+static constexpr double SIZE_OF_POINTS = 0.5;
 // passes that fit the gradients of velocities with which points begin, at most, and their change of
 // velocities of faces, relative to the largest one, that ends them: a pass leaves up to 0.58 of
 // what is missing, and 0.9 at walls, if it takes all of the gradients that it finds, and less if it
@@ -338,7 +341,7 @@ void MPMFlow::find_wet_cells()
 
 void MPMFlow::faces_to_points()
 {
-  double shift_energy[2] = {0.0, 0.0}, step_energy[3] = {0.0, 0.0, 0.0};
+  double shift_energy[2] = {0.0, 0.0}, step_energy[4] = {0.0, 0.0, 0.0, 0.0};
   const MPMFlowUpdate update = {
       options.flip,
       !now.keeps   ? nullptr
@@ -363,7 +366,9 @@ void MPMFlow::faces_to_points()
                                      update, fields.pressures.data(), MPMPoints::get(atom)->tau);
   energy.kinetic = 0.5 * force->mvv2e * step_energy[0];
   energy.work += step_energy[1];
-  energy.in_play = std::max(IN_PLAY, options.tolerance) * step_energy[2] * options.h;
+  energy.in_play = options.h *
+      (std::max(IN_PLAY, options.tolerance) * (step_energy[2] + step_energy[3]) +
+       SIZE_OF_POINTS * step_energy[3]);
   energy.counts = only_forces_work(parts, options);
   if (parts.solids) energy.work -= parts.solids->take_work();
   spreading_energy += force->mvv2e * shift_energy[0] - shift_energy[1];

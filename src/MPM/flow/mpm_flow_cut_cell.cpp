@@ -15,6 +15,8 @@ using namespace LAMMPS_NS;
 
 // places along an axis at which the open share of surroundings is found
 static constexpr int PLACES = 8;
+// of the range of depths in which that of a surface is found
+static constexpr int HALVINGS = 20;
 
 double MPMFlowCutCell::positive(double a, double b)
 {
@@ -92,23 +94,74 @@ void MPMFlowCutCell::add_positive(double a, double b, double c, double d, double
   }
 }
 
-double MPMFlowCutCell::positive_in_hat(int dim, double middle, const double *slope)
+/** Calls f(weight, place[dim]) for places in a hat function, which add up to one. */
+template <class F> static void visit_hat(int dim, const F &f)
 {
-  double sum = 0.0;
   const double step = 2.0 / PLACES;
-  double width = 0.0;
-  for (int d = 0; d < dim; d++) width += std::fabs(slope[d]) * step;
   for (int a = 0; a < PLACES; a++)
     for (int b = 0; b < PLACES; b++)
       for (int c = 0; c < (dim == 3 ? PLACES : 1); c++) {
         const int k[3] = {a, b, c};
-        double weight = 1.0, at = middle;
+        double weight = 1.0, place[3];
         for (int d = 0; d < dim; d++) {
-          const double t = (k[d] + 0.5) * step - 1.0;
-          weight *= (1.0 - std::fabs(t)) * step;
-          at += slope[d] * t;
+          place[d] = (k[d] + 0.5) * step - 1.0;
+          weight *= (1.0 - std::fabs(place[d])) * step;
         }
-        sum += weight * (width > 0.0 ? std::max(0.0, std::min(0.5 + at / width, 1.0)) : at > 0.0);
+        f(weight, place);
       }
+}
+
+/** Share of the part of a hat function around a place in which a linear function is positive, with
+ *  this value there. width: by how much it differs in that part. */
+static double positive_at(double value, double width)
+{
+  return width > 0.0 ? std::max(0.0, std::min(0.5 + value / width, 1.0)) : value > 0.0;
+}
+
+static double width_of(int dim, const double *slope)
+{
+  double width = 0.0;
+  for (int d = 0; d < dim; d++) width += std::fabs(slope[d]) * 2.0 / PLACES;
+  return width;
+}
+
+static double at(int dim, const double *slope, const double *place)
+{
+  double sum = 0.0;
+  for (int d = 0; d < dim; d++) sum += slope[d] * place[d];
   return sum;
+}
+
+double MPMFlowCutCell::positive_in_hat(int dim, double middle, const double *slope)
+{
+  double sum = 0.0;
+  const double width = width_of(dim, slope);
+  visit_hat(dim, [&](double weight, const double *place) {
+    sum += weight * positive_at(middle + at(dim, slope, place), width);
+  });
+  return sum;
+}
+
+double MPMFlowCutCell::share_without_wall(int dim, double middle, const double *slope,
+                                          const double *down, double share)
+{
+  constexpr int MOST = PLACES * PLACES * PLACES;
+  double open[MOST], below[MOST], all = 0.0;
+  const double width = width_of(dim, slope), width_of_surface = width_of(dim, down);
+  int n = 0;
+  visit_hat(dim, [&](double weight, const double *place) {
+    const double here = weight * positive_at(middle + at(dim, slope, place), width);
+    if (here == 0.0) return;
+    open[n] = here;
+    below[n++] = at(dim, down, place);
+    all += here;
+  });
+  double low = -std::sqrt((double) dim), high = -low;
+  for (int k = 0; k < HALVINGS; k++) {
+    const double depth = 0.5 * (low + high);
+    double sum = 0.0;
+    for (int i = 0; i < n; i++) sum += open[i] * positive_at(depth + below[i], width_of_surface);
+    (sum < share * all ? low : high) = depth;
+  }
+  return positive_in_hat(dim, 0.5 * (low + high), down);
 }

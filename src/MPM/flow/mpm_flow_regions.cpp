@@ -492,13 +492,15 @@ void MPMFlowRegions::set_motion(const std::vector<double> &all)
 
 /* ---------------------------------------------------------------------- */
 
-void MPMFlowRegions::keep_outside(double *x, double *v) const
+double MPMFlowRegions::keep_outside(double *x, double *v) const
 {
   const double h = cells.lattice.h, margin = MARGIN * h;
+  double before = 0.0;
   for (int pass = 0; pass < 3; pass++) {
     int wall;
     const double d = distance(x, FAR * h, wall);
-    if (d >= margin) return;
+    if (pass == 0) before = d;
+    if (d >= margin) break;
     double n[3], wall_velocity[3];
     normal_at(wall, x, n);
     velocity_at(wall, x, wall_velocity);
@@ -509,6 +511,7 @@ void MPMFlowRegions::keep_outside(double *x, double *v) const
       if (into < 0.0) v[k] -= into * n[k];
     }
   }
+  return before;
 }
 
 double MPMFlowRegions::depth(const double *x, double far) const

@@ -92,8 +92,9 @@ class MPMFlowRegions : protected Pointers {
   /** Gives velocities [cell][dim] of closed faces near walls the normal component of the wall
    *  (moving), or none; of all cells before and afterwards. Collective. */
   void hold(std::vector<double> &velocity, bool moving = true) const;
-  /** Moves a point that is in a wall out of it, and removes its velocity into the wall. */
-  void keep_outside(double *x, double *v) const;
+  /** Moves a point that is in a wall out of it, and removes its velocity into the wall. Returns its
+   *  distance from walls before, at most a few spacings. */
+  double keep_outside(double *x, double *v) const;
   /** Depth of a place in a wall, positive inside, between -far and far. */
   double depth(const double *x, double far) const;
 
@@ -190,6 +191,9 @@ class MPMFlowRegions : protected Pointers {
   void place(const int *index, const double *offset, double *x) const;
   void corner_levels(const int *index, double *level) const;
   void continue_surface(std::vector<double> &share) const;
+  template <class F> void visit_around(std::size_t k, double open, const F &) const;
+  bool find_surface(std::size_t k, const std::vector<double> &share, double open, double *down,
+                    double *normal) const;
   void find_apertures();
   void find_cuts();
   void find_moments(Cut &) const;

@@ -11,6 +11,8 @@
 
 #include "flow/mpm_flow_regions.h"
 
+#include "flow/mpm_flow_cut_cell.h"
+
 #include "math_extra.h"
 
 #include <algorithm>
@@ -20,11 +22,13 @@ using namespace LAMMPS_NS;
 
 // open share of the surroundings of a cell below which the cells around count, too
 static constexpr double LITTLE_VOLUME = 0.3;
-// least cosine between a floor and the surface; open share from which on a cell is whole; a cell
-// has a surface with a share of water above SURFACE and below 1 - SURFACE; least slope of shares
-// that shows the direction of the surface, and what keeps its equations regular
-static constexpr double FLOOR = 0.7, WHOLE = 0.75, SURFACE = 0.1, LEAST_SLOPE = 0.3,
-                        REGULAR = 1.0e-3;
+// open share from which on that of water shows the depth of a cell; open share from which on a cell
+// is whole; share of water from which on it is full but for round-off
+static constexpr double ENOUGH = 0.4, WHOLE = 0.75, FULL = 1.0 - 1.0e-9;
+// least cosine between a floor and the surface; a cell has a surface with a share of water above
+// SURFACE and below 1 - SURFACE; least slope of shares that shows the direction of the surface, and
+// what keeps its equations regular
+static constexpr double FLOOR = 0.3, SURFACE = 0.1, LEAST_SLOPE = 0.3, REGULAR = 1.0e-3;
 // layers of closed cells that points near walls reach
 static constexpr int LAYERS = 2;
 
@@ -61,79 +65,100 @@ void MPMFlowRegions::normalize(std::vector<double> &share) const
 /* ----------------------------------------------------------------------
    Only a part of the surroundings of a cell next to a wall is open, above a floor the upper part.
    Their filled share therefore does not show how deep the middle of the cell is below a surface.
-   Where whole cells around have a surface, it is continued as a plane.
+   Where enough is open, it shows the depth together with the direction of the surface around. Where
+   less is open, the surface of cells around is continued as a plane.
 ------------------------------------------------------------------------- */
 
 void MPMFlowRegions::continue_surface(std::vector<double> &share) const
 {
-  const int naround = dim == 2 ? 9 : 27;
-  values.assign(cells.size(), 0.0);
-  for (std::size_t k = 0; k < cells.cells.size(); k++) {
-    const auto &cell = cells.cells[k];
-    double &mine = values[cell.number];
-    mine = share[cell.number];
-    if (volume_fractions[cell.number] >= WHOLE || closed[cell.number]) continue;
-
-    // gradient of the shares of whole cells, by least squares
-
-    const int *const at = cells.around.data() + (int64_t) k * naround;
-    double n = 0.0, mean = 0.0, middle[3] = {0.0, 0.0, 0.0};
-    const auto each = [&](const auto &f) {
-      for (int j = 0; j < naround; j++) {
-        if (at[j] < 0 || volume_fractions[at[j]] < WHOLE) continue;
-        const int plain = dim == 2 ? 3 * j : j;    // as if there were three layers
-        const double offset[3] = {(double) (plain / 9 - 1), (double) (plain / 3 % 3 - 1),
-                                  dim == 2 ? 0.0 : (double) (plain % 3 - 1)};
-        f(std::min(1.0, share[at[j]]), offset);
-      }
-    };
-    each([&](double s, const double *offset) {
-      n += 1.0;
-      mean += s;
-      for (int d = 0; d < dim; d++) middle[d] += offset[d];
-    });
-    if (n == 0.0) continue;
-    double A[3][3] = {{REGULAR, 0.0, 0.0}, {0.0, REGULAR, 0.0}, {0.0, 0.0, REGULAR}};
-    double b[3] = {0.0, 0.0, 0.0}, up[3];
-    each([&](double s, const double *offset) {
-      for (int d = 0; d < dim; d++) {
-        b[d] += (s - mean / n) * (offset[d] - middle[d] / n);
-        for (int e = 0; e < dim; e++)
-          A[d][e] += (offset[d] - middle[d] / n) * (offset[e] - middle[e] / n);
-      }
-    });
-    double inverse[3][3];
-    MathExtra::invert3(A, inverse);
-    MathExtra::matvec(inverse, b, up);
-    double slope = MathExtra::len3(up);
-    double x[3], normal[3];
-    int wall;
-    place(cell.index, MIDDLE, x);
-    distance(x, FAR * cells.lattice.h, wall);
-    normal_at(wall, x, normal);
-    // equal depths: a film along the wall
-    if (slope < LEAST_SLOPE * std::min(1.0, 2.0 * mean / n)) {
-      for (int d = 0; d < 3; d++) up[d] = -normal[d];
-      slope = 1.0;
+  double down[3], normal[3];
+  const auto change = [&](const auto &f) {
+    values.assign(cells.size(), 0.0);
+    for (std::size_t k = 0; k < cells.cells.size(); k++) {
+      const int number = cells.cells[k].number;
+      values[number] = share[number];
+      if (volume_fractions[number] < 1.0 && !closed[number]) f(k, number, values[number]);
     }
-    if (-MathExtra::dot3(up, normal) < FLOOR * slope) continue;
+    cells.publish(values.data(), 1);
+    cells.reflect_cells(values.data());
+    share.swap(values);
+  };
 
+  change([&](std::size_t k, int number, double &mine) {
+    if (volume_fractions[number] < ENOUGH || mine <= 0.0 || mine >= FULL ||
+        !find_surface(k, share, WHOLE, down, normal))
+      return;
+    mine = MPMFlowCutCell::share_without_wall(dim, levels[number] / cells.lattice.h, normal, down,
+                                              mine);
+  });
+
+  change([&](std::size_t k, int number, double &mine) {
+    if (volume_fractions[number] >= ENOUGH || !find_surface(k, share, ENOUGH, down, normal)) return;
     double depth = 0.0, weight = 0.0;
-    each([&](double s, const double *offset) {
+    visit_around(k, ENOUGH, [&](int other, const double *offset) {
+      const double s = share[other];
       if (s < SURFACE || s > 1.0 - SURFACE) return;
       const double of = s < 0.5 ? std::sqrt(2.0 * s) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - s));
-      depth += of - MathExtra::dot3(up, offset) / slope;
+      depth += of - MathExtra::dot3(down, offset);
       weight += 1.0;
     });
-    if (weight == 0.0) continue;
+    if (weight == 0.0) return;
     depth = std::max(-1.0, std::min(depth / weight, 1.0));
     mine = std::max(mine,
                     depth < 0.0 ? 0.5 * (1.0 + depth) * (1.0 + depth)
                                 : 1.0 - 0.5 * (1.0 - depth) * (1.0 - depth));
+  });
+}
+
+/** Calls f(number, offset[3]) for the cells around a cell, and for itself, whose surroundings are
+ *  open by this share at least. */
+template <class F> void MPMFlowRegions::visit_around(std::size_t k, double open, const F &f) const
+{
+  const int naround = dim == 2 ? 9 : 27;
+  const int *const at = cells.around.data() + (int64_t) k * naround;
+  for (int j = 0; j < naround; j++) {
+    if (at[j] < 0 || volume_fractions[at[j]] < open) continue;
+    const int plain = dim == 2 ? 3 * j : j;    // as if there were three layers
+    const double offset[3] = {(double) (plain / 9 - 1), (double) (plain / 3 % 3 - 1),
+                              dim == 2 ? 0.0 : (double) (plain % 3 - 1)};
+    f(at[j], offset);
   }
-  cells.publish(values.data(), 1);
-  cells.reflect_cells(values.data());
-  share.swap(values);
+}
+
+/** Direction into the water and out of the wall at a cell above a floor. The former is that in
+ *  which the shares of cells around grow, by least squares. Returns false if there is no surface,
+ *  or no floor. */
+bool MPMFlowRegions::find_surface(std::size_t k, const std::vector<double> &share, double open,
+                                  double *down, double *normal) const
+{
+  double n = 0.0, mean = 0.0, middle[3] = {0.0, 0.0, 0.0};
+  visit_around(k, open, [&](int other, const double *offset) {
+    n += 1.0;
+    mean += std::min(1.0, share[other]);
+    for (int d = 0; d < dim; d++) middle[d] += offset[d];
+  });
+  if (n == 0.0) return false;
+  double A[3][3] = {{REGULAR, 0.0, 0.0}, {0.0, REGULAR, 0.0}, {0.0, 0.0, REGULAR}};
+  double b[3] = {0.0, 0.0, 0.0}, inverse[3][3], x[3];
+  visit_around(k, open, [&](int other, const double *offset) {
+    for (int d = 0; d < dim; d++) {
+      b[d] += (std::min(1.0, share[other]) - mean / n) * (offset[d] - middle[d] / n);
+      for (int e = 0; e < dim; e++)
+        A[d][e] += (offset[d] - middle[d] / n) * (offset[e] - middle[e] / n);
+    }
+  });
+  MathExtra::invert3(A, inverse);
+  MathExtra::matvec(inverse, b, down);
+  const double slope = MathExtra::len3(down);
+  int wall;
+  place(cells.cells[k].index, MIDDLE, x);
+  distance(x, FAR * cells.lattice.h, wall);
+  normal_at(wall, x, normal);
+  if (slope < LEAST_SLOPE * std::min(1.0, 2.0 * mean / n))    // equal depths: a film along the wall
+    for (int d = 0; d < 3; d++) down[d] = -normal[d];
+  else
+    for (int d = 0; d < 3; d++) down[d] /= slope;
+  return -MathExtra::dot3(down, normal) >= FLOOR;
 }
 
 void MPMFlowRegions::hold(std::vector<double> &velocity, bool moving) const

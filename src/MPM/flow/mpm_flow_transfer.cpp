@@ -446,7 +446,7 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
   const Places<dim> places(cells.lattice);
   StaggeredWeights w;
   bool all_in_reach = true;
-  double squares[2] = {0.0, 0.0}, energy[3] = {0.0, 0.0, 0.0};
+  double squares[2] = {0.0, 0.0}, energy[4] = {0.0, 0.0, 0.0, 0.0};
   // and, if there are such: those before, those after an impulse, the shift, more
   const double *fields[5] = {velocity};
   const int at_old = 1, at_struck = update.old ? 2 : 1, at_shift = at_struck + !!update.struck,
@@ -543,8 +543,9 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         x[d] += points.dt * u + shift[d];
       }
       places.keep_inside(x);
+      bool next_to_region = false;
       if (update.regions) {
-        update.regions->keep_outside(x, v);
+        next_to_region = update.regions->keep_outside(x, v) < cells.lattice.h;
         places.keep_inside(x);
       }
       double force_square = 0.0;
@@ -554,13 +555,13 @@ bool get(const MPMFlowLattice &cells, const MPMFlowPoints &points, const double 
         energy[1] += points.f[i][c] * (x[c] - from[c]);
         force_square += points.f[i][c] * points.f[i][c];
       }
-      energy[2] += std::sqrt(force_square);
+      energy[next_to_region ? 3 : 2] += std::sqrt(force_square);
       places.find_base(x, base);
       all_in_reach = all_in_reach && cells.in_reach<dim>(run, base);
     }
   }
   if (update.squares) std::copy_n(squares, 2, update.squares);
-  if (update.energy) std::copy_n(energy, 3, update.energy);
+  if (update.energy) std::copy_n(energy, 4, update.energy);
   return all_in_reach;
 }
 

@@ -69,8 +69,9 @@ struct MPMFlowUpdate {
   /** Has the flow gained energy? Points then keep their velocities in the shift, and those of
    *  solids have no gradients, which damps them. */
   bool gains = false;
-  /** Receives three sums over the points of this rank: mass times the square of the velocity after
-   *  the step, the work of forces along the way in the step, and the magnitudes of forces. */
+  /** Receives four sums over the points of this rank: mass times the square of the velocity after
+   *  the step, the work of forces along the way in the step, and the magnitudes of forces, apart
+   *  for points less than a spacing from a region, which are the last sum. */
   double *energy = nullptr;
   /** [cell][dim] velocities that points move with; null: their new velocities. */
   const double *paths = nullptr;
