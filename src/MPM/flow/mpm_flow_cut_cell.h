@@ -27,8 +27,8 @@ namespace MPMFlowCutCell {
    *  its differences per spacing. */
   double positive_in_hat(int dim, double middle, const double *slope);
   /** Share of the surroundings of the middle of a cell that water below a plane fills, given the
-   *  share that it fills of what is open of them, as if all of them were open. middle, slope: of the
-   *  wall, as in positive_in_hat(); down: [dim] unit vector into the water. */
+   *  share that it fills of what is open of them, as if all of them were open. middle, slope: of
+   *  the wall, as in positive_in_hat(); down: [dim] unit vector into the water. */
   double share_without_wall(int dim, double middle, const double *slope, const double *down,
                             double share);
   /** Adds to sum[2] the length, and its moment about the middle, of the part of a segment of length
