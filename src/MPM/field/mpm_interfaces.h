@@ -57,6 +57,22 @@ class MPMRegionImages {
   ~MPMRegionImages() = default;    // owned and deleted as a Fix
 };
 
+/** A region that keeps material out, such as a wall. Implemented by a fix. */
+class MPMBarrier {
+ public:
+  /** Does it keep the material of this field out? */
+  virtual bool keeps_out(const MPMField &) const = 0;
+  /** Can its region be elsewhere, or have another shape, later in this run? Only during a run. */
+  virtual bool changes_place() const = 0;
+  /** Puts the region where it is at the start of the step: others may have moved it since. */
+  virtual void go_to_start() = 0;
+  /** Signed distance of x, negative in the region; far or -far if it is greater. */
+  virtual double gap(const double *x, double far) const = 0;
+
+ protected:
+  ~MPMBarrier() = default;    // owned and deleted as a Fix
+};
+
 /** Knows the points that can touch other atoms. Implemented by a fix. */
 class MPMListedPoints {
  public:

@@ -34,6 +34,7 @@
 #include "force.h"
 #include "material/material.h"
 #include "material/material_point.h"
+#include "math_special.h"
 #include "update.h"
 
 #include <algorithm>
@@ -41,6 +42,8 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+using MathSpecial::square;
 
 // difference of the pressures of points of a gas from the means around them, relative to these,
 // that is told: below, the mean pressure is right within 2 %
@@ -63,6 +66,10 @@ static constexpr double HARDLY = 1.0e-3;
 static constexpr double REACH = 2.0;    // of the widest function [node spacings]
 // share of the function of a node in the box that is next to nothing: points hardly sample it
 static constexpr double LITTLE = 0.25;
+// the same of nodes outside, next to a wall in a plane of nodes: one with less counts no more
+static constexpr double LEAST_PART = 0.02;
+// of nodes in regions: what points have gone there is an excess
+static constexpr double NOTHING = 1.0e-9;
 static constexpr double MOST_DRIFT = 0.02;    // mean difference of fillings from one: a warning
 // standard deviations of that mean, and the largest difference that may be chance
 static constexpr double DEVIATIONS = 3.0, MOST_CHANCE = 0.3;
@@ -72,33 +79,18 @@ static constexpr double MOST_SHARE = 0.2, MOST_EXCESS = 0.3, SPREAD = 3.75;
 // regular arrays have an excess next to walls, as sums are not integrals; full effect on pressures
 static constexpr double LEAST_EXCESS = 0.0075, FULL_EXCESS = 0.02;
 
-/** Integral of the function of a node from minus infinity to t, in node spacings from the node. */
-static double integral(Shape shape, double t)
-{
-  const double a = std::fabs(t);
-  double half = 0.5;    // from 0 to a
-  if (shape == QUADRATIC) {
-    if (a < 0.5)
-      half = a * (0.75 - a * a / 3.0);
-    else if (a < 1.5)
-      half -= std::pow(1.5 - a, 3) / 6.0;
-  } else if (shape == CUBIC) {
-    if (a < 1.0)
-      half = a * (2.0 / 3.0 - a * a * (1.0 / 3.0 - a / 8.0));
-    else if (a < 2.0)
-      half -= std::pow(2.0 - a, 4) / 24.0;
-  } else if (a < 1.0) {
-    half = a - 0.5 * a * a;
-  }
-  return t < 0.0 ? 0.5 - half : 0.5 + half;
-}
-
 void MPMVolumeDrift::init()
 {
   corrects = field.options.drift > 0.0 && !field.options.averages_strain() &&
       std::any_of(field.materials.begin(), field.materials.end(), [](const auto *material) {
                return material->volume_rate != nullptr;
              });
+  // regions count only where there is liquid: solids next to walls may overlap them a little
+  has_liquid = false;
+  const auto present = field.present_materials();
+  for (std::size_t k = 0; k < present.size(); k++)
+    has_liquid = has_liquid || (present[k] && field.materials[k]->volume_rate);
+  free_room.init();
   warned = cleared = false;
   inside = {};
   gas = {};
@@ -133,7 +125,8 @@ double MPMVolumeDrift::part_along(int axis, int node) const
                high = (domain->boxhi[axis] - lattice.origin[axis]) / lattice.h;
   if (node >= low + REACH && node <= high - REACH) return 1.0;
   const auto plain = [&](int i) {
-    return integral(field.options.shape, high - i) - integral(field.options.shape, low - i);
+    return integral_of_function(field.options.shape, high - i) -
+        integral_of_function(field.options.shape, low - i);
   };
   double part = plain(node);
   if (field.nodes.edges)    // nodes outside have given theirs to those at the face and inside
@@ -173,11 +166,23 @@ double MPMVolumeDrift::mean_circle(int64_t node) const
     const double from = -REACH + 2.0 * REACH * k / SLICES, to = from + 2.0 * REACH / SLICES,
                  middle = radius + 0.5 * (from + to);
     if (middle < 0.0) continue;
-    const double share = integral(field.options.shape, to) - integral(field.options.shape, from);
+    const double share = integral_of_function(field.options.shape, to) -
+        integral_of_function(field.options.shape, from);
     sum += share;
     moment += share * middle;
   }
   return sum > 0.0 ? frame.circle(moment / sum * lattice.h) : 0.0;
+}
+
+/** Does material fill a region around this node, as in a grip? Then it is no matter of room. In
+ *  each row of nodes into a region there is one that hardly reaches out of it and all points
+ *  inside. */
+bool MPMVolumeDrift::is_in_wall(std::size_t n) const
+{
+  constexpr double CLOSED = 0.17, MUCH = 0.6;    // share that is left; filling of the other one
+  return !share.empty() && share[n] < CLOSED &&
+      field.work.nodes[field.pic.nreal * n + 3] >
+      (share[n] + MUCH) * field.lattice.cell_volume() * part_in_box((int64_t) n);
 }
 
 /** Sums at nodes over the points with a material: work.nodes <- sum N V q and, in the fourth place,
@@ -237,11 +242,14 @@ void MPMVolumeDrift::find_filling()
   sum_at_nodes();
   const double cell = field.lattice.cell_volume();
   fill.assign(field.grid.nnodes(), 0.0);
+  share.clear();
+  if (has_liquid && free_room.is_cut()) free_room.find(work.nodes.data(), NREAL, share);
   part.resize(fill.size());
   for (std::size_t n = 0; n < fill.size(); n++) {
     double *const record = &work.nodes[NREAL * n];
     if (!(record[3] > 0.0)) continue;
     part[n] = part_in_box((int64_t) n);
+    if (!share.empty() && !is_in_wall(n)) part[n] *= std::max(share[n], NOTHING);
     if (part[n] > 0.0) fill[n] = record[3] / (cell * part[n]);
     if (axis && part[n] > 0.0) {
       const double circle = mean_circle((int64_t) n),
@@ -292,7 +300,7 @@ void MPMVolumeDrift::mark_points_at_surfaces()
   auto &work = field.work;
   for (std::size_t n = 0; n < fill.size(); n++) {
     double *const record = &work.nodes[field.pic.nreal * n];
-    record[0] = fill[n] < full && part[n] > LITTLE;
+    record[0] = (fill[n] < full && part[n] > LITTLE) || is_in_wall(n);
     record[1] = record[2] = 0.0;
   }
   interpolate();
@@ -327,7 +335,8 @@ void MPMVolumeDrift::find_inside()
       mine[4] += part[n] > LITTLE;
       mine[1] += room;
       mine[2] += room * excess;
-      mine[3] += room * excess * excess;
+      // little room that is too small for its points must not tell for all
+      mine[3] += square(room * excess) / std::max(room, LEAST_PART * (room / part[n]));
     }
     record[0] = is_inside ? part[n] * excess : 0.0;
     record[2] = is_inside ? 0.0 : 1.0;

@@ -10,6 +10,7 @@
 #define LMP_MPM_VOLUME_DRIFT_H
 
 #include "base/mpm_lists.h"
+#include "field/mpm_free_room.h"
 #include "field/mpm_point_map.h"
 #include "pointers.h"
 
@@ -36,7 +37,10 @@ class MPMField;
  *  to a surface, a wall, or another body, and tell nothing. */
 class MPMVolumeDrift : protected Pointers {
  public:
-  MPMVolumeDrift(class LAMMPS *lmp, MPMField &field) : Pointers(lmp), field(field) {}
+  MPMVolumeDrift(class LAMMPS *lmp, MPMField &field) :
+      Pointers(lmp), field(field), free_room(lmp, field)
+  {
+  }
 
   /** Start of a run. */
   void init();
@@ -48,10 +52,15 @@ class MPMVolumeDrift : protected Pointers {
   /** A line for the summary of the run; empty if the field has no nodes inside of bodies. */
   std::string report() const;
 
-  double memory_usage() const { return bytes_of(fill, part, circles, change); }
+  double memory_usage() const
+  {
+    return bytes_of(fill, part, share, circles, change) + free_room.memory_usage();
+  }
 
  private:
   MPMField &field;
+  MPMFreeRoom free_room;
+  bool has_liquid = false;
   bool corrects = false, warned = false, cleared = false;
   /** Nodes inside of bodies, of all ranks. */
   struct {
@@ -64,8 +73,10 @@ class MPMVolumeDrift : protected Pointers {
     bool warned = false;
   } gas;
   std::set<const FixMPMMaterial *> gases;
-  std::vector<double> fill;       // [node] filling
-  std::vector<double> part;       // [node] share of its function that is in the box
+  std::vector<double> fill;    // [node] filling
+  std::vector<double>
+      part;    // [node] share of its function that is in the box, and outside of regions
+  std::vector<double> share;      // [node] of part that regions leave
   std::vector<double> circles;    // [node] of mean_circle(); empty: no axis of symmetry
   std::vector<double> change;     // [n] strain since the last look
   std::map<const FixMPMMaterial *, double> stiffness;    // at rest, of liquids [pressure]
@@ -73,6 +84,7 @@ class MPMVolumeDrift : protected Pointers {
   int looks_every() const;    // 0: never
   double part_along(int axis, int node) const;
   double part_in_box(int64_t node) const;
+  bool is_in_wall(std::size_t node) const;
   double mean_circle(int64_t node) const;
   void sum_at_nodes();
   void interpolate();

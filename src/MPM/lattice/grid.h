@@ -152,6 +152,12 @@ class Grid {
   int64_t memory_usage() const;
 
   static uint64_t block_key(const Block &block) { return key(block.b); }
+  /** A number for three coordinates of blocks or nodes. */
+  static uint64_t key(const int b[3])
+  {
+    constexpr uint64_t bias = 1u << 20, mask = (1u << 21) - 1;
+    return (((b[0] + bias) & mask) << 42) | (((b[1] + bias) & mask) << 21) | ((b[2] + bias) & mask);
+  }
 
  private:
   std::unordered_map<uint64_t, int> table;
@@ -161,12 +167,6 @@ class Grid {
   };
   std::unique_ptr<double[], Free> node;
   int64_t capacity = 0;    // reals
-
-  static uint64_t key(const int b[3])
-  {
-    constexpr uint64_t bias = 1u << 20, mask = (1u << 21) - 1;
-    return (((b[0] + bias) & mask) << 42) | (((b[1] + bias) & mask) << 21) | ((b[2] + bias) & mask);
-  }
 };
 
 }    // namespace MPM_NS

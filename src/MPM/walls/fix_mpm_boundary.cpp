@@ -292,6 +292,15 @@ MPMTrialContact *FixMPMBoundary::trial_contact()
   return wall.decides() || wall.moves_and_holds ? &trial : nullptr;
 }
 
+/** The region of a wall that moves is where it was at the end of the last step. */
+void FixMPMBoundary::go_to_start()
+{
+  if (!wall.region_moves())
+    wall.region->prematch();
+  else if (wall.placed)
+    wall.restore_region();
+}
+
 void FixMPMBoundary::mark_prescribed(const MPMField &field, std::vector<char> &held) const
 {
   const auto *list = nodes_of(field);

@@ -17,6 +17,7 @@ FixStyle(mpm/boundary,FixMPMBoundary);
 
 #include "field/mpm_doubts.h"
 #include "field/mpm_friction_heat.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_trial_contact.h"
 #include "fix.h"
@@ -42,7 +43,12 @@ class MPMField;
  *  A face is a mirror: nodes beyond it are images of nodes inside of the box. A region acts on
  *  lines of nodes through its surface, or on each of the nodes inside of it, see
  *  MPMWall::acts_across(). */
-class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, public MPMLineTies {
+class FixMPMBoundary :
+    public Fix,
+    public MPMNodeAction,
+    public MPMRubbing,
+    public MPMLineTies,
+    public MPMBarrier {
  public:
   FixMPMBoundary(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
@@ -86,6 +92,16 @@ class FixMPMBoundary : public Fix, public MPMNodeAction, public MPMRubbing, publ
   /** Signed distance of x from the surface of the region, negative inside; far if it is larger.
    *  Only during a run. */
   double distance(const double *x, double far) const { return wall.surface->distance(x, far); }
+  bool keeps_out(const MPMField &field) const override
+  {
+    return is_region() && wall.acts_on(field);
+  }
+  bool changes_place() const override { return wall.region_moves(); }
+  void go_to_start() override;
+  double gap(const double *x, double far) const override
+  {
+    return wall.surface->distance_in_cells(x, far);
+  }
   bool acts_inside() const override { return is_region(); }
   bool holds_axis(const MPMField &field) const override { return wall.holds_axis(field); }
   /** Adds the faces, or the region, to what rigid bodies can meet in a step. */
