@@ -8,6 +8,7 @@
 
 #include "base/mpm_input.h"
 
+#include "base/mpm_options.h"
 #include "law/plugin.h"
 #include "table/regular_file.h"
 
@@ -115,7 +116,7 @@ static std::unique_ptr<Material> read_file(LAMMPS *lmp, const std::string &calle
 {
   const int iarg = first + 1;
   Error *const error = lmp->error;
-  if (iarg >= narg) utils::missing_cmd_args(FLERR, utils::lowercase(caller) + " file", error);
+  require_arguments(lmp, utils::lowercase(caller) + " file", narg, iarg, {"filename"});
   const std::string name = arg[iarg];
 
   std::string text, problem;

@@ -49,6 +49,18 @@ int LAMMPS_NS::read_options(LAMMPS *lmp, Options &options, int narg, char **arg,
   return iarg;
 }
 
+void LAMMPS_NS::require_arguments(LAMMPS *lmp, const std::string &command, int narg, int first,
+                                  std::initializer_list<const char *> names)
+{
+  std::string missing;
+  int place = first;
+  for (const char *name : names)
+    if (place++ >= narg) missing += std::string(" ") + name;
+  if (!missing.empty())
+    lmp->error->all(FLERR, Error::NOPOINTER, "Illegal {} command: missing argument(s), needs{}",
+                    command, missing);
+}
+
 int LAMMPS_NS::read_precision(LAMMPS *lmp, int narg, char **arg, bool &single)
 {
   Options o("dump_modify");

@@ -11,6 +11,7 @@
 
 #include "declare/option.h"
 
+#include <initializer_list>
 #include <string>
 
 // Declared options (declare/option.h) in LAMMPS: numbers are read as everywhere in its input, and a
@@ -24,6 +25,11 @@ class LAMMPS;
  *  index of this word, or of the end. */
 int read_options(LAMMPS *, MPM_NS::Options &, int narg, char **arg, int iarg,
                  const std::string &last = "");
+
+/** Stops with an error if the command ends before all of these arguments, the first of which has
+ *  the index first, and says which are missing. */
+void require_arguments(LAMMPS *, const std::string &command, int narg, int first,
+                       std::initializer_list<const char *> names);
 
 /** Reads precision single|double of dump_modify and returns 2, or 0 for any other keyword. */
 int read_precision(LAMMPS *, int narg, char **arg, bool &single);

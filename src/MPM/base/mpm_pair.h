@@ -82,7 +82,7 @@ template <class Coeff> void MPMPair<Coeff>::allocate()
 
 template <class Coeff> void MPMPair<Coeff>::coeff(int narg, char **arg)
 {
-  if (narg < 3) utils::missing_cmd_args(FLERR, "pair_coeff " + style, error);
+  require_arguments(lmp, "pair_coeff " + style, narg, 0, {"I", "J"});
   if (!allocated) allocate();
   int ilo, ihi, jlo, jhi;
   utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);

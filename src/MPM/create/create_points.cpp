@@ -106,7 +106,8 @@ void CreatePoints::command(int narg, char **arg)
                "define these fixes and use run 0 first");
 
   const int iarg = 0;
-  if (narg < 2) utils::missing_cmd_args(FLERR, "create_points", error);
+  require_arguments(lmp, "create_points", narg, 0,
+                    {"type", "one of region box image mesh elements table"});
   type = utils::expand_type_int(FLERR, arg[0], Atom::ATOM, lmp);
   if (type < 1 || type > atom->ntypes)
     error->all(FLERR, iarg, "Invalid atom type {} in create_points command, the box has {} type{}",
@@ -280,7 +281,7 @@ void CreatePoints::parse(int narg, char **arg)
 {
   int iarg = 2;
   if (strcmp(arg[1], "region") == 0) {
-    if (narg < 3) utils::missing_cmd_args(FLERR, "create_points region", error);
+    require_arguments(lmp, "create_points region", narg, 2, {"region-ID"});
     region = domain->get_region_by_id(arg[2]);
     if (!region) error->all(FLERR, 2, "Create_points region {} does not exist", arg[2]);
     region->init();

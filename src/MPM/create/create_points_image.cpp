@@ -322,7 +322,7 @@ std::unique_ptr<ImageBody> LAMMPS_NS::read_image_body(LAMMPS *lmp,
 
 void CreatePoints::parse_image(int narg, char **arg)
 {
-  if (narg < 3) utils::missing_cmd_args(FLERR, "create_points image", error);
+  require_arguments(lmp, "create_points image", narg, 2, {"file"});
   const int dim = domain->dimension;
   CreatePointsImageOptions given;
   Options options("create_points image");

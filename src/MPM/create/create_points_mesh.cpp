@@ -424,7 +424,7 @@ void CreatePointsMesh::set_domains(int first)
 void CreatePoints::parse_mesh(int narg, char **arg)
 {
   const std::string what = std::string("create_points ") + arg[1];
-  if (narg < 3) utils::missing_cmd_args(FLERR, what, error);
+  require_arguments(lmp, what, narg, 2, {"file"});
   for (auto *field : MPMField::all(lmp))
     if (field->options.axisymmetric) fix = field;
   const bool in_elements = strcmp(arg[1], "elements") == 0;

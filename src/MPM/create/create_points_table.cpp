@@ -361,7 +361,7 @@ void CreatePointsTable::check_points(const std::string &file)
 
 void CreatePoints::parse_table(int narg, char **arg)
 {
-  if (narg < 3) utils::missing_cmd_args(FLERR, "create_points table", error);
+  require_arguments(lmp, "create_points table", narg, 2, {"file"});
   CreatePointsTableOptions given;
   Options options = given.declare(domain->dimension, atom->radius_flag);
   read_options(lmp, options, narg, arg, 3);

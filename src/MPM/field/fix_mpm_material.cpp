@@ -9,6 +9,7 @@
 #include "field/fix_mpm_material.h"
 
 #include "base/mpm_input.h"
+#include "base/mpm_options.h"
 #include "field/mpm_doubts.h"
 #include "material/batch_kernels.h"
 #include "material/material.h"
@@ -34,7 +35,7 @@ static constexpr int RESTART_VERSION = 2;
 FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
 {
   static_assert(NWORK <= sizeof(work) / sizeof(double), "room for all kinds of work");
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/material", error);
+  require_arguments(lmp, "fix mpm/material", narg, 3, {"density or file"});
   if (!atom->rmass || !atom->vfrac)
     error->all(FLERR,
                "Fix mpm/material needs material points: use atom_style mpm, alone or in a hybrid");

@@ -35,7 +35,7 @@ static constexpr int GAS_VALUES = 5, PART_VALUES = 2;
 
 static void check_command(LAMMPS *lmp, int narg)
 {
-  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/incompressible", lmp->error);
+  require_arguments(lmp, "fix mpm/incompressible", narg, 3, {"h", "density"});
   if (!MPMPoints::get(lmp->atom))
     lmp->error->all(
         FLERR,

@@ -112,7 +112,7 @@ Options MPMEmitOptions::declare(int dim)
 
 FixMPMEmit::FixMPMEmit(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/emit", error);
+  require_arguments(lmp, "fix mpm/emit", narg, 3, {"TYPE"});
   if (!atom->style_match("mpm"))
     error->all(
         FLERR, Error::NOLASTLINE,

@@ -9,6 +9,7 @@
 #include "output/compute_mpm_atom.h"
 
 #include "atom.h"
+#include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "error.h"
 #include "field/fix_mpm_material.h"
@@ -141,7 +142,7 @@ ComputeMPMAtom::Column ComputeMPMAtom::find_column(const std::string &name)
 ComputeMPMAtom::ComputeMPMAtom(LAMMPS *lmp, int narg, char **arg) :
     Compute(lmp, narg, arg), points(MPMPoints::get(atom))
 {
-  if (narg < 4) utils::missing_cmd_args(FLERR, "compute mpm/atom", error);
+  require_arguments(lmp, "compute mpm/atom", narg, 3, {"name"});
   if (!points)
     error->all(FLERR, 2, "Compute mpm/atom requires material points: use atom_style mpm");
 

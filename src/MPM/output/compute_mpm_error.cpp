@@ -10,6 +10,7 @@
 
 #include "arg_info.h"
 #include "atom.h"
+#include "base/mpm_options.h"
 #include "domain.h"
 #include "error.h"
 #include "fix.h"
@@ -26,7 +27,7 @@ using namespace LAMMPS_NS;
 /** compute ID group mpm/error  value exact  value exact ... */
 ComputeMPMError::ComputeMPMError(LAMMPS *lmp, int narg, char **arg) : Compute(lmp, narg, arg)
 {
-  if (narg < 5) utils::missing_cmd_args(FLERR, "compute mpm/error", error);
+  require_arguments(lmp, "compute mpm/error", narg, 3, {"value", "exact"});
   if (!atom->rmass || !atom->vfrac)
     error->all(FLERR,
                "Compute mpm/error needs material points: use atom_style mpm, alone or in a hybrid");

@@ -8,6 +8,7 @@
 
 #include "output/dump_mpm_grid_vtk.h"
 
+#include "base/mpm_options.h"
 #include "field/mpm_field.h"
 #include "fix.h"
 #include "modify.h"
@@ -24,7 +25,7 @@ const std::vector<DumpMPMGridVTK::Quantity> DumpMPMGridVTK::known = {
 DumpMPMGridVTK::DumpMPMGridVTK(LAMMPS *lmp, int narg, char **arg) : DumpVTKSeries(lmp, narg, arg)
 {
   const ErrorWords these(lmp, narg, arg);
-  if (narg < 7) utils::missing_cmd_args(FLERR, "dump mpm/grid/vtk", error);
+  require_arguments(lmp, "dump mpm/grid/vtk", narg, 3, {"N", "file", "fix-ID", "field"});
   if (igroup != 0)
     error->all(FLERR, 1, "Dump mpm/grid/vtk requires group all: the fix mpm selects the nodes");
   if (utils::inumeric(FLERR, arg[3], false, lmp) <= 0)

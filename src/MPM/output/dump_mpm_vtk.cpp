@@ -8,6 +8,7 @@
 
 #include "output/dump_mpm_vtk.h"
 
+#include "base/mpm_options.h"
 #include "compute.h"
 #include "memory.h"
 #include "modify.h"
@@ -54,7 +55,7 @@ DumpMPMVTK::Request::Request(LAMMPS *lmp_in, int narg, char **arg) : lmp(lmp_in)
 {
   auto *error = lmp->error;
   shown = std::make_unique<ErrorWords>(lmp, narg, arg);
-  if (narg < 5) utils::missing_cmd_args(FLERR, "dump mpm/vtk", error);
+  require_arguments(lmp, "dump mpm/vtk", narg, 3, {"N", "file"});
 
   const auto wrong = VTKFile::name_error(arg[4], "vtp", strcmp(arg[0], "WRITE_DUMP") != 0, true);
   if (!wrong.empty()) error->all(FLERR, 4, "Dump mpm/vtk {}", wrong);

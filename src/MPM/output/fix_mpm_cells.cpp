@@ -9,6 +9,7 @@
 #include "output/fix_mpm_cells.h"
 
 #include "atom.h"
+#include "base/mpm_options.h"
 #include "base/mpm_points.h"
 #include "domain.h"
 #include "error.h"
@@ -39,7 +40,7 @@ static const struct {
 /** fix ID group mpm/cells FIXID */
 FixMPMCells::FixMPMCells(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm/cells", error);
+  require_arguments(lmp, "fix mpm/cells", narg, 3, {"fix-ID"});
   if (narg > 4) error->all(FLERR, 4, "Unknown fix mpm/cells argument: {}", arg[4]);
 
   pergrid_flag = 1;

@@ -42,7 +42,7 @@ FixMPMRefine::FixMPMRefine(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, a
     error->all(FLERR, 1,
                "Fix mpm/refine acts on nodes, which have no group: use group all; the fields whose "
                "points are one body are named");
-  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/refine", error);
+  require_arguments(lmp, "fix mpm/refine", narg, 3, {"coarse-ID", "fine-ID"});
   for (int i = 3; i < narg; i++) {
     const std::string name = arg[i];
     if (std::find(ids.begin(), ids.end(), name) != ids.end())

@@ -64,7 +64,7 @@ FixMPM::FixMPM(LAMMPS *lmp, int narg, char **arg) : FixMPMState(lmp, narg, arg)
   if (!atom->tag_enable)
     error->all(FLERR,
                "Fix mpm tells points from each other by their IDs: remove atom_modify id no");
-  if (narg < 4) utils::missing_cmd_args(FLERR, "fix mpm", error);
+  require_arguments(lmp, "fix mpm", narg, 3, {"h"});
   const double h = utils::numeric(FLERR, arg[3], false, lmp);
   if (!(h > 0.0) || !std::isfinite(h))
     error->all(FLERR, 3, "Fix mpm node spacing must be positive: {}", arg[3]);

@@ -99,9 +99,11 @@ bool FixMPMBoundary::slides_in_vain() const
 /** Reads where the wall is; returns the index of the next argument. */
 int FixMPMBoundary::read_place(int narg, char **arg)
 {
-  if (narg < 5) utils::missing_cmd_args(FLERR, "fix mpm/boundary", error);
+  require_arguments(lmp, "fix mpm/boundary", narg, 3,
+                    {"region or one or more of xlo xhi ylo yhi zlo zhi"});
   int iarg = 3;
   if (strcmp(arg[iarg], "region") == 0) {
+    require_arguments(lmp, "fix mpm/boundary region", narg, iarg + 1, {"region-ID"});
     wall.region_id = arg[iarg + 1];
     iarg += 2;
   } else {

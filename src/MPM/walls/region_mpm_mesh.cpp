@@ -80,7 +80,7 @@ static std::string read_bytes(LAMMPS *lmp, const char *file)
  *  of all regions. */
 RegMPMMesh::RegMPMMesh(LAMMPS *lmp, int narg, char **arg) : Region(lmp, narg, arg)
 {
-  if (narg < 7) utils::missing_cmd_args(FLERR, "region mpm/mesh", error);
+  require_arguments(lmp, "region mpm/mesh", narg, 2, {"file", "scale", "x", "y", "z"});
   int own = 7;
   const auto is_of_all = [](const char *word) {
     for (const char *keyword : {"side", "units", "move", "rotate", "open"})
