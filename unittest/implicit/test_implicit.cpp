@@ -1198,6 +1198,10 @@ SERIAL_TEST(Limit, IsReported)
   Scene run;
   const auto said = run.error(scene + "run 10\n");
   ASSERT_NE(said.find("no equilibrium in step 4"), std::string::npos) << said;
+  // of hundreds of sums of forces the first and the last
+  const auto from = said.find("sums of forces:"), to = said.find("; ratio", from);
+  ASSERT_NE(to, std::string::npos) << said;
+  EXPECT_LT(to - from, 250u) << said;
   const auto at = said.find("in this step ");
   ASSERT_NE(at, std::string::npos);
   const double share = std::stod(said.substr(at + 13)) / 100.0;

@@ -82,7 +82,6 @@ template <class Coeff> void MPMPair<Coeff>::allocate()
 
 template <class Coeff> void MPMPair<Coeff>::coeff(int narg, char **arg)
 {
-  require_arguments(lmp, "pair_coeff " + style, narg, 0, {"I", "J"});
   if (!allocated) allocate();
   int ilo, ihi, jlo, jhi;
   utils::bounds(FLERR, arg[0], 1, atom->ntypes, ilo, ihi, error);

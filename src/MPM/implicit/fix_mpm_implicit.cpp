@@ -35,6 +35,9 @@
 
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
+
+static constexpr std::size_t SHOWN = 9;    // sums of forces in an error
+
 using Data = MPMStageData;    // what stages read and write
 
 FixMPMImplicit::FixMPMImplicit(LAMMPS *lmp, int narg, char **arg) :
@@ -152,7 +155,18 @@ void FixMPMImplicit::setup(int)
   std::copy_n(total, (int) NTOTAL, at_start);
 }
 
-/* ---------------------------------------------------------------------- */
+/** The first sums of forces and the last ones, most numbers in all: where a solver does not come to
+ *  an end, hundreds are alike. */
+static std::string text_of(const std::vector<double> &residuals, double unit, std::size_t most)
+{
+  const std::size_t n = residuals.size(), first = n > most ? most / 3 : n,
+                    last = n > most ? n - (most - first) : n;
+  std::string text;
+  for (std::size_t k = 0; k < first; k++) text += fmt::format(" {:.9g}", residuals[k] / unit);
+  if (last > first) text += fmt::format(" ... ({} more) ...", last - first);
+  for (std::size_t k = last; k < n; k++) text += fmt::format(" {:.9g}", residuals[k] / unit);
+  return text;
+}
 
 void FixMPMImplicit::step()
 {
@@ -194,7 +208,7 @@ void FixMPMImplicit::step()
   }
   std::string list;
   if ((report || !now.converged) && comm->me == 0)
-    for (const double r : now.residuals) list += fmt::format(" {:.9g}", r / force->ftm2v);
+    list = text_of(now.residuals, force->ftm2v, now.converged ? now.residuals.size() : SHOWN);
   if (!now.converged)
     error->all(
         FLERR, Error::NOLASTLINE,
