@@ -175,6 +175,22 @@ SERIAL_TEST(TankInSpace, KeepsItsWater)
   EXPECT_LT(level("drift 0"), 0.9);
 }
 
+// no other liquid has the correction, and what is named does
+SERIAL_TEST(OtherLiquids, AreToldOfTait)
+{
+  const auto scene = [](const std::string &law) {
+    return replaced(tank("transfer flip 1.0 smooth 0", 0.05), "eos tait 2.0e5 7", law) +
+        "fix step all mpm/dt 0.4 until 3\nrun 100000\n";
+  };
+  const std::string words = "times the room that they fill at step";
+  for (const char *law : {"eos stiffened/gas 4 5.0e4 pressure 0", "eos shock 14 1.9 0.3"}) {
+    const auto lines = lines_that_say(scene(law), words);
+    ASSERT_EQ(lines.size(), 1u) << law;
+    EXPECT_THAT(lines[0], HasSubstr("use eos tait or linear in fix mpm/material m")) << law;
+  }
+  EXPECT_EQ(times_said(scene("eos tait 2.0e5 7"), words), 0);
+}
+
 static const char FILLED[] = "volumes add up to ";    // times the room
 
 /** The number after these words in the summary of the last run. */

@@ -42,7 +42,7 @@ class FixMPMRigid :
     public MPMNodeAction,
     public MPMRubbing,
     public MPMStepLimit,
-    public MPMRegionImages,
+    public MPMRegionUser,
     private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
@@ -70,10 +70,12 @@ class FixMPMRigid :
   double stable_dt(tagint &tag) const override;
   bool makes_steps() const override { return false; }
 
+
   // for flows
   /** Is the shape of the body the region with this ID? */
   bool has_region(const std::string &id) const { return id == region_id; }
-  bool sees_images(const std::string &name) const override { return name == region_id; }
+  bool uses_region(const std::string &name) const override { return name == region_id; }
+  bool sees_images() const override { return true; }
   /** Center [3], velocity [3], and angular velocity [3]. */
   void motion(double *center, double *velocity, double *angular) const;
   /** Maps a place x of the body to its place in the region, which stays at rest. */

@@ -111,23 +111,33 @@ void MPMDoubts::check_time_step(const std::string &who)
                     update->dt, update->unit_style));
 }
 
+/** Adds a region and its parts, and those of these. */
+static void add_parts(Region *region, std::set<const Region *> &parts)
+{
+  parts.insert(region);
+  for (int k = 0; region->nregion > 1 && k < region->nregion; k++)
+    add_parts(region->reglist[k], parts);
+}
+
+/** Regions may be there for groups, variables, and commands that make points, too, or for
+ *  nothing. */
 void MPMDoubts::check_regions()
 {
+  std::set<const Region *> used, seen;    // seen: with their images
   const auto regions = domain->get_region_list();
+  for (auto *region : regions)
+    for (const auto *user : find_fixes<MPMRegionUser>(lmp))
+      if (user->uses_region(region->id)) add_parts(region, user->sees_images() ? seen : used);
   const auto at_low_end = [](const Region &r, int d) {
     return d == 0 ? r.extent_xlo : d == 1 ? r.extent_ylo : r.extent_zlo;
   };
-  const auto users = find_fixes<MPMRegionImages>(lmp);
   for (const auto *region : regions) {
-    const bool sees = std::any_of(users.begin(), users.end(), [&](const auto *user) {
-      return user->sees_images(region->id);
-    });
-    if (sees) continue;
+    if (!used.count(region) || seen.count(region)) continue;
     for (int d = 0; d < domain->dimension; d++) {
       const double shift = image_shift(*domain, *region, d), least = 1.0e-6 * domain->prd[d];
       if (shift == 0.0) continue;
       const bool has_image = std::any_of(regions.begin(), regions.end(), [&](const Region *other) {
-        return image_shift(*domain, *other, d) == -shift &&
+        return used.count(other) && image_shift(*domain, *other, d) == -shift &&
             fabs(at_low_end(*other, d) - at_low_end(*region, d) - shift) < least;
       });
       if (has_image || !warned_of.insert(region->id).second || comm->me) continue;
@@ -138,6 +148,8 @@ void MPMDoubts::check_regions()
                      region->id, (char) ('x' + d), shift > 0.0 ? "lo" : "hi",
                      region->dynamic
                          ? "add the same fix with a region that moves as it does, and is"
+                         : region->openflag    // a union of open regions has no inside
+                         ? "add the same fix with a region that is"
                          : "use a union of it and a region that is",
                      shift, (char) ('x' + d));
     }
@@ -191,7 +203,11 @@ void MPMDoubts::check_weight(const MPMField &field)
   if (!(strength > 0.0)) return;
   for (const auto *of : field.materials) {
     if (of->material->is_of_surfaces()) continue;
-    const double modulus = MPMRestModuli(*of->material).compression;
+    const bool solid = of->material->is_solid();
+    if (!solid && is_ideal_gas(*of->material)) continue;    // it is compressed by its weight
+    const double c = solid ? 0.0 : MaterialPoint(*of->material).wave_speed();
+    const double modulus = solid ? MPMRestModuli(*of->material).compression
+                                 : of->material->density() * c * c * force->mvv2e * force->nktv2p;
     double mine[2] = {-INF, -INF}, all[2];    // highest, and minus the lowest
     for (int i = 0; i < atom->nlocal; i++) {
       if (!field.is_point(i) || field.material_of(i) != of) continue;
@@ -202,10 +218,10 @@ void MPMDoubts::check_weight(const MPMField &field)
     MPI_Allreduce(mine, all, 2, MPI_DOUBLE, MPI_MAX, world);
     if (all[0] == -INF) continue;
     const double weight = of->material->density() * strength * (all[0] + all[1]) * force->nktv2p;
-    check(SOFT_SOLID, modulus / weight, fmt::format("Fix mpm/material {}", of->id),
-          fmt::format("the modulus {:.4g} of this solid is less than the pressure of its own "
-                      "weight, {:.4g}",
-                      modulus, weight));
+    check(SOFT_BODY, modulus / weight, fmt::format("Fix mpm/material {}", of->id),
+          fmt::format(
+              "the {} {:.4g} of this {} is less than the pressure of its own weight, {:.4g}",
+              solid ? "modulus" : "bulk modulus", modulus, solid ? "solid" : "liquid", weight));
   }
 }
 

@@ -40,7 +40,7 @@ class MPMDoubts : protected Pointers {
     COLD_METAL,       ///< temperature over the reference temperature of a strength
     MOLTEN,           ///< temperature over the melting temperature of a strength
     MOLTEN_WALL,      ///< temperature of a wall over this melting temperature
-    SOFT_SOLID,       ///< modulus of a solid at rest over the pressure of its own weight
+    SOFT_BODY,        ///< modulus of a solid or liquid at rest over the pressure of its own weight
     REGION_ALONE,     ///< 1: no material is near the surface of a region with a condition
     BEGINS_INSIDE,    ///< depth of points in a wall or rigid body at the start, in node spacings
     WEIGHTLESS,       ///< 1: there is a weight, but a rigid body has none
@@ -57,16 +57,16 @@ class MPMDoubts : protected Pointers {
   /** Warns of a time step that no command has set, of a solver that has no explicit limit with
    *  which it could be compared. */
   void check_time_step(const std::string &who);
-  /** Warns of regions across periodic faces: they have no images, so that walls, surfaces, and
-   *  bodies that they describe end there. A region that is the image of another one is the
-   *  remedy. */
+  /** Warns of regions across periodic faces that fixes of this package use: they have no images, so
+   *  that walls, surfaces, and bodies that they describe end there. A region that is the image of
+   *  another one is the remedy. */
   void check_regions();
   /** Once in each step: the same for regions that move, from time to time. */
   void look_at_regions();
   /** Warns of points that are as warm as the melting temperature of their strength when they are
    *  new, or far below its reference temperature. Collective. */
   void check_temperatures(const class MPMField &);
-  /** Warns of solids that their own weight presses to nothing. Collective. */
+  /** Warns of solids and liquids that their own weight presses to nothing. Collective. */
   void check_weight(const class MPMField &);
   /** Warns of gas that nothing can hold at an end of it: the box is empty there, and no fix is
    *  there that could press on it. Collective. */

@@ -47,14 +47,17 @@ class MPMRefinedBody {
   ~MPMRefinedBody() = default;    // owned and deleted as a Fix
 };
 
-/** Makes of its region something that goes on behind periodic faces, while for others regions end
- *  where they are. Implemented by a fix. */
-class MPMRegionImages {
+/** Makes walls, surfaces with a load or heat, bodies, or inlets of regions. Implemented by a
+ *  fix. */
+class MPMRegionUser {
  public:
-  virtual bool sees_images(const std::string &region) const = 0;
+  /** Is the region with this ID one of them? */
+  virtual bool uses_region(const std::string &region) const = 0;
+  /** Do its regions go on behind periodic faces? For others they end where they are. */
+  virtual bool sees_images() const { return false; }
 
  protected:
-  ~MPMRegionImages() = default;    // owned and deleted as a Fix
+  ~MPMRegionUser() = default;    // owned and deleted as a Fix
 };
 
 /** A region that keeps material out, such as a wall. Implemented by a fix. */

@@ -402,6 +402,15 @@ void MPMVolumeDrift::note(int every)
   const double chance = DEVIATIONS * inside.rms / std::sqrt(inside.nodes);
   if (warned || wrong < MOST_DRIFT + std::min(MOST_CHANCE, chance)) return;
   warned = true;
+  const auto other_liquid =
+      std::find_if(field.materials.begin(), field.materials.end(), [&](const FixMPMMaterial *one) {
+        return !one->material->is_solid() && !one->material->is_barotropic() && !gases.count(one);
+      });
+  const std::string not_corrected = other_liquid == field.materials.end()
+      ? ""
+      : fmt::format("For a liquid at low pressure, use eos tait or linear in fix mpm/material {}, "
+                    "whose volumes follow the room, as those of this equation of state cannot",
+                    (*other_liquid)->id);
   if (comm->me == 0)
     error->warning(FLERR,
                    "Fix mpm {}: inside of its bodies, the volumes of the points add up to {:.4g} "
@@ -410,6 +419,7 @@ void MPMVolumeDrift::note(int every)
                    field.id(), 1.0 + drift, update->ntimestep,
                    corrects ? "Use more points per cell, or a larger drift"
                        : gases.size() == field.materials.size() ? GAS_NEEDS
+                       : !not_corrected.empty()                 ? not_corrected.c_str()
                        : field.options.drift > 0.0
                        ? "Check the volumes at the start; use a smaller time step or spacing, more "
                          "points per cell, transfer apic, or frame total"

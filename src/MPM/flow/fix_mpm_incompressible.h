@@ -22,6 +22,7 @@ FixStyle(mpm/incompressible,FixMPMIncompressible);
 #include "field/mpm_point_batches.h"
 #include "flow/mpm_flow.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -33,6 +34,7 @@ class FixMPMIncompressible :
     public FixMPMState,
     public MPMStepLimit,
     public MPMFluid,
+    public MPMRegionUser,
     public MPMPointOwner {
  public:
   FixMPMIncompressible(class LAMMPS *, int, char **);
@@ -61,6 +63,11 @@ class FixMPMIncompressible :
    *  explicit viscosity, of solids, or of surface tension. tag: of the limiting point; 0: another
    *  limit. */
   double stable_dt(tagint &tag) const override { return flow->stable_dt(tag); }
+  bool uses_region(const std::string &name) const override
+  {
+    const auto &ids = flow->options.region_ids;
+    return std::find(ids.begin(), ids.end(), name) != ids.end();
+  }
   double spacing_around(const std::string &region) const override;
   double spacing() const override { return flow->options.h; }
   void visit_batches(int group_bits, const BatchVisitor &) override;

@@ -22,7 +22,9 @@ FixStyle(mpm/heat,FixMPMHeat);
 #include "heat/mpm_grain_heat.h"
 #include "heat/mpm_heat_flow.h"
 
+#include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -30,7 +32,7 @@ namespace LAMMPS_NS {
 /** Conduction of heat in points of conducting materials (with a part thermal), heat through faces
  *  of the box, surfaces of regions, and free surfaces, and heat exchange between bodies (fix mpm)
  *  in contact. */
-class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
+class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink, public MPMRegionUser {
  public:
   FixMPMHeat(class LAMMPS *, int, char **);
   int setmask() override;    // fix mpm calls conduction
@@ -59,6 +61,13 @@ class FixMPMHeat : public FixMPMState, public MPMPhysics, public MPMHeatSink {
   std::vector<Account> accounts() const override;
   void account(double *values) const override;
   double energy_at_hand() const override;
+
+  bool uses_region(const std::string &name) const override
+  {
+    return std::any_of(options.surfaces.begin(), options.surfaces.end(), [&](const auto &one) {
+      return one.region == name;
+    });
+  }
 
   bool conducts(const MPMField &field) const override { return flow.in(field).conducts(); }
   void give(const MPMField &, std::size_t node, double heat, bool counts) override;

@@ -36,7 +36,7 @@ struct MPMAbsorbOptions {
 
 /** Removes the material points of its group that are in a region at the end of a step, and sums up
  *  their mass and other quantities. */
-class FixMPMAbsorb : public Fix, public MPMRegionImages, private MPMAbsorbOptions {
+class FixMPMAbsorb : public Fix, public MPMRegionUser, private MPMAbsorbOptions {
  public:
   FixMPMAbsorb(class LAMMPS *, int, char **);
   int setmask() override { return FixConst::POST_INTEGRATE | FixConst::PRE_EXCHANGE; }
@@ -47,7 +47,8 @@ class FixMPMAbsorb : public Fix, public MPMRegionImages, private MPMAbsorbOption
   void restart(char *) override;
   double compute_scalar() override { return total.mass; }
   double compute_vector(int) override;
-  bool sees_images(const std::string &name) const override { return name == region_id; }
+  bool uses_region(const std::string &name) const override { return name == region_id; }
+  bool sees_images() const override { return true; }
 
  private:
   Region *region = nullptr;

@@ -18,6 +18,7 @@ FixStyle(mpm/dashpot,FixMPMDashpot);
 #include "base/mpm_state.h"
 #include "declare/option.h"
 #include "field/mpm_forces.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
 #include "field/mpm_nodes.h"
 #include "field/mpm_physics.h"
@@ -53,6 +54,7 @@ class FixMPMDashpot :
     public MPMNodeAction,
     public MPMPhysics,
     public MPMAddedStress,
+    public MPMRegionUser,
     private MPMDashpotOptions {
  public:
   FixMPMDashpot(class LAMMPS *, int, char **);
@@ -66,6 +68,8 @@ class FixMPMDashpot :
   double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+
+  bool uses_region(const std::string &name) const override { return name == region; }
 
   void extend_topology(MPMField &) override;
   void topology_changed(MPMField &) override;

@@ -55,17 +55,14 @@ struct MPMEmitOptions {
  *  where S is the distance that the flow has traveled so far and d is the distance between layers.
  *  A layer enters at its current place in the step in which this distance becomes positive. So the
  *  mass agrees with the flow for any velocity and time step. */
-class FixMPMEmit :
-    public Fix,
-    public MPMNodeAction,
-    public MPMRegionImages,
-    private MPMEmitOptions {
+class FixMPMEmit : public Fix, public MPMNodeAction, public MPMRegionUser, private MPMEmitOptions {
  public:
   FixMPMEmit(class LAMMPS *, int, char **);
   ~FixMPMEmit() override;
   int setmask() override { return FixConst::POST_INTEGRATE | FixConst::PRE_EXCHANGE; }
   void init() override;
-  bool sees_images(const std::string &name) const override { return name == region_id; }
+  bool uses_region(const std::string &name) const override { return name == region_id; }
+  bool sees_images() const override { return true; }
   void setup_pre_exchange() override;
   void post_integrate() override;
   void pre_exchange() override;

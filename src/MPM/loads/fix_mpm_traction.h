@@ -18,6 +18,7 @@ FixStyle(mpm/traction,FixMPMTraction);
 #include "base/mpm_state.h"
 #include "declare/option.h"
 #include "field/mpm_forces.h"
+#include "field/mpm_interfaces.h"
 #include "field/mpm_physics.h"
 #include "loads/mpm_face.h"
 #include "loads/mpm_moment.h"
@@ -53,6 +54,7 @@ class FixMPMTraction :
     public MPMPhysics,
     public MPMAddedStress,
     public MPMLoad,
+    public MPMRegionUser,
     private MPMTractionOptions {
  public:
   FixMPMTraction(class LAMMPS *, int, char **);
@@ -66,6 +68,11 @@ class FixMPMTraction :
   double memory_usage() override;
   void write_restart(FILE *) override;
   void restart(char *) override;
+
+  bool uses_region(const std::string &name) const override
+  {
+    return surface == REGION && name == region;
+  }
 
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;

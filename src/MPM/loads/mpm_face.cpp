@@ -18,6 +18,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "group.h"
 #include "region.h"
@@ -264,6 +265,12 @@ void MPMFace::check(const std::string &user, int igroup, double known_area) cons
 {
   double all[3];    // as in sums
   MPI_Allreduce(sums, all, 3, MPI_DOUBLE, MPI_SUM, world);
+  if (all[2] == 0.0 && region->nregion > 1 && MPMRegionSurface(region, domain->dimension).is_open())
+    error->all(FLERR, Error::NOLASTLINE,
+               "{}: region {} is made of regions with open faces, which have no inside by which "
+               "they could "
+               "be put together: use a fix of this style for each of them, or close their faces",
+               user, region->id);
   if (all[2] == 0.0)
     error->all(
         FLERR, Error::NOLASTLINE,

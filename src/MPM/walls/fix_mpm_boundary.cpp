@@ -96,6 +96,15 @@ bool FixMPMBoundary::slides_in_vain() const
   return false;
 }
 
+bool FixMPMBoundary::uses_region(const std::string &name) const
+{
+  const auto &patches = wall.patches;
+  return name == wall.region_id ||
+      std::any_of(patches.begin(), patches.end(), [&](const auto &one) {
+           return one.region_id == name;
+         });
+}
+
 /** Reads where the wall is; returns the index of the next argument. */
 int FixMPMBoundary::read_place(int narg, char **arg)
 {

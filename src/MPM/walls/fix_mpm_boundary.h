@@ -48,7 +48,8 @@ class FixMPMBoundary :
     public MPMNodeAction,
     public MPMRubbing,
     public MPMLineTies,
-    public MPMBarrier {
+    public MPMBarrier,
+    public MPMRegionUser {
  public:
   FixMPMBoundary(class LAMMPS *, int, char **);
   int setmask() override { return 0; }    // called by fix mpm
@@ -61,6 +62,8 @@ class FixMPMBoundary :
   double compute_scalar() override { return reaction.work(); }
   double compute_vector(int i) override { return reaction.force_on_wall(i); }
   double memory_usage() override;
+
+  bool uses_region(const std::string &) const override;
 
   Turn turn() const override { return WALLS; }
   void couple_topology() override;
