@@ -329,6 +329,23 @@ double FixMPMRigid::spacing_of_flow() const
   return 0.0;
 }
 
+/** All points of fields, and the flow that it is in. */
+bool FixMPMRigid::acts_on(const std::string &name) const
+{
+  const auto *const flow = dynamic_cast<const MPMFluid *>(modify->get_fix_by_id(name));
+  return flow ? flow->spacing_around(region_id) > 0.0 : MPMField::find(lmp, name) != nullptr;
+}
+
+bool FixMPMRigid::has_inside(const double *at) const
+{
+  double r[3], place[3];
+  MathExtra::sub3(at, x, r);
+  nearest_image(*domain, r);
+  if (MathExtra::lensq3(r) > contact.farthest * contact.farthest) return false;
+  place_in_region(at, place);
+  return domain->get_region_by_id(region_id)->match(place[0], place[1], place[2]);
+}
+
 /** A body touches material where nodes are inside of it at the start of a step. One that crosses
  *  more than a cell in a step can pass through a body without touching it. All ranks have the same
  *  motion. */

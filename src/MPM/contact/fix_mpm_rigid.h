@@ -17,6 +17,7 @@ FixStyle(mpm/rigid,FixMPMRigid);
 
 #include "base/mpm_step_limit.h"
 #include "contact/mpm_rigid_contact.h"
+#include "field/mpm_coupling.h"
 #include "field/mpm_doubts.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
@@ -43,6 +44,7 @@ class FixMPMRigid :
     public MPMRubbing,
     public MPMStepLimit,
     public MPMRegionUser,
+    public MPMSolidBody,
     private MPMRigidOptions {
  public:
   Turn turn() const override { return RIGID_BODIES; }
@@ -70,6 +72,8 @@ class FixMPMRigid :
   double stable_dt(tagint &tag) const override;
   bool makes_steps() const override { return false; }
 
+  bool acts_on(const std::string &name) const override;
+  bool has_inside(const double *at) const override;
 
   // for flows
   /** Is the shape of the body the region with this ID? */

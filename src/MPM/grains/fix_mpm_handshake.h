@@ -64,6 +64,10 @@ class FixMPMHandshake :
   {
     return (one == field_name && other == id) || (one == id && other == field_name);
   }
+  int atoms_coupled_to(const std::string &one) const override
+  {
+    return one == field_name ? groupbit : 0;
+  }
   void setup_pre_neighbor() override;
   void setup_post_neighbor() override { post_neighbor(); }
   void post_neighbor() override;

@@ -17,6 +17,7 @@ FixStyle(mpm/immersed,FixMPMImmersed);
 
 #include "base/mpm_state.h"
 #include "declare/option.h"
+#include "field/mpm_coupling.h"
 #include "field/mpm_interfaces.h"
 #include "field/mpm_node_action.h"
 #include "grains/mpm_drag.h"
@@ -46,6 +47,7 @@ class FixMPMImmersed :
     public FixMPMState,
     public MPMNodeAction,
     public MPMListedPoints,
+    public MPMCoupling,
     private MPMImmersedOptions {
  public:
   FixMPMImmersed(class LAMMPS *, int, char **);
@@ -64,6 +66,11 @@ class FixMPMImmersed :
   void act(double dt, Stage) override;
 
   bool keeps_group(int group) const override;
+  bool couples(const std::string &, const std::string &) const override { return false; }
+  int atoms_coupled_to(const std::string &one) const override
+  {
+    return one == field_id ? groupbit : 0;
+  }
 
   // for flows
 
