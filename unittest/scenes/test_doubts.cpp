@@ -134,6 +134,26 @@ SERIAL_TEST(Doubts, SolidsSofterThanTheirWeight)
   EXPECT_EQ(told(scene(1e3, replaced(weight, "9.81", "0.0981")), words), 0);
 }
 
+// bulk moduli of liquids against a weight of 3.9 kPa, whatever their equation of state
+SERIAL_TEST(Doubts, LiquidsSofterThanTheirWeight)
+{
+  const auto scene = [](const std::string &law, const std::string &more) {
+    return START + GRID + "fix m all mpm/material density 1000 " + law + "\n" + more +
+        replaced(STEP, "0.5", "0.2 max 1e-6");
+  };
+  const std::string words = "it is pressed flat where it stands",
+                    weight = "fix g all gravity 9.81 vector 0 -1 0\n";
+  for (const char *law : {"eos tait %g 7", "eos linear %g"}) {
+    EXPECT_EQ(told(scene(strprintf(law, 2.2), weight), words), 1) << law;
+    EXPECT_EQ(told(scene(strprintf(law, 2.2e5), weight), words), 0) << law;
+    EXPECT_EQ(told(scene(strprintf(law, 2.2), ""), words), 0) << law;
+  }
+  EXPECT_EQ(told(scene("eos shock 0.05 1.9 0.3", weight), words), 1);    // K = 2.5 Pa
+  EXPECT_EQ(told(scene("eos shock 50 1.9 0.3", weight), words), 0);
+  EXPECT_EQ(told(scene("eos ideal/gas 1.4 pressure 10", weight), words),
+            0);    // a tall one is dense below
+}
+
 SERIAL_TEST(Doubts, NobodyHasSetTheTimeStep)
 {
   const std::string words = "is the default of units si, which no command has changed";
@@ -203,6 +223,63 @@ SERIAL_TEST(Doubts, RegionsAcrossPeriodicFaces)
   EXPECT_EQ(told(flows + "fix out all mpm/absorb region r\n", words), 0);
 }
 
+// regions that nothing uses, or that only make points and groups
+SERIAL_TEST(Doubts, RegionsThatNothingUses)
+{
+  const auto scene = replaced(START, "boundary f f p", "boundary p f p") + GRID + CONDUCTS + STEP +
+      "region far cylinder z 0.05 0.7 0.1 INF INF\n";
+  const std::string words = "Region far reaches across the periodic face",
+                    near = "region hot block 0.3 0.6 0.4 0.6 INF INF\n",
+                    heat = near + "fix h all mpm/heat region hot temperature 400\n";
+  EXPECT_EQ(told(scene + heat, words), 0);
+  EXPECT_EQ(told(scene + "group mine region far\n", words), 0);
+  EXPECT_EQ(told(scene + "create_points 1 region far ppc 2 outside ignore\n", words), 0);
+  // and what uses it, alone or as a part
+  const auto with = [&](const std::string &use) {
+    return told(scene + near + use + "\n", words);
+  };
+  EXPECT_EQ(with("fix w all mpm/boundary region far slip"), 1);
+  EXPECT_EQ(with("fix w all mpm/boundary ylo slip friction 0.1 patch far 0.2"), 1);
+  EXPECT_EQ(with("fix h all mpm/heat region far temperature 400"), 1);
+  EXPECT_EQ(with("region two union 2 far hot\nfix w all mpm/boundary region two slip"), 1);
+  // an image that nothing uses is none
+  EXPECT_EQ(with("region image cylinder z 1.05 0.7 0.1 INF INF\n"
+                 "fix w all mpm/boundary region far slip"),
+            1);
+  EXPECT_EQ(with("region image cylinder z 1.05 0.7 0.1 INF INF\n"
+                 "fix w all mpm/boundary region far slip\n"
+                 "fix v all mpm/boundary region image slip"),
+            0);
+}
+
+// a load on regions with open faces across a periodic face: the remedy that is named has all of it
+SERIAL_TEST(Doubts, OpenRegionsAcrossPeriodicFaces)
+{
+  const std::string open = " open 1 open 2 open 3\n",
+                    lid = "region lid block 0.7 1.3 INF 0.4 INF INF" + open,
+                    image = "region image block -0.3 0.3 INF 0.4 INF INF" + open;
+  const auto scene = replaced(START,
+                              {{"boundary f f p", "boundary p f p"},
+                               {"region b block 0.2 0.8 0 0.4 INF INF\n",
+                                "region low block 0 0.2 0 0.4 INF INF\n"
+                                "region high block 0.8 1 0 0.4 INF INF\n"
+                                "region b union 2 low high\n"}}) +
+      GRID + CONDUCTS + STEP + lid;
+  const std::string load = " mpm/traction region ", down = " traction 0 -100 0\n",
+                    words = "reaches across the periodic face";
+  const auto one = lines_that_say(scene + "fix t all" + load + "lid" + down + RUNS, words);
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_THAT(one[0], HasSubstr("add the same fix with a region that is shifted by -1 along x"));
+  const auto both =
+      scene + image + "fix t all" + load + "lid" + down + "fix s all" + load + "image" + down;
+  EXPECT_EQ(told(both, words), 0);
+  Scene run(both + "run 2\n");
+  EXPECT_NEAR(run.evaluate("f_t[2]+f_s[2]"), -100.0 * 0.4, 1e-9);
+  expect_error(scene + image + "region all union 2 lid image\nfix t all" + load + "all" + down +
+                   "run 1\n",
+               "use a fix of this style for each of them");
+}
+
 // columns and computes of LAMMPS that see a part of points only
 SERIAL_TEST(Doubts, PressureOfAtoms)
 {
@@ -216,6 +293,30 @@ SERIAL_TEST(Doubts, PressureOfAtoms)
   EXPECT_EQ(told(scene + "compute s all stress/atom NULL\n", of_compute), 1);
   EXPECT_EQ(told(scene + "compute p all pressure NULL virial\n", of_compute), 1);
   EXPECT_EQ(told(scene + "group none type 2\ncompute s none stress/atom NULL\n", of_compute), 0);
+}
+
+SERIAL_TEST(Doubts, EnergyOfAtoms)
+{
+  const auto scene = START + GRID + CONDUCTS + STEP;
+  const std::string words = "not that of the stress of material points",
+                    of_compute = "sees the energy of pairs, not that of their stress",
+                    warning = "WARNING: Fix mpm: columns of the log (";
+  const auto style = [](const std::string &columns) {
+    return "thermo_style custom step " + columns + "\n";
+  };
+  EXPECT_EQ(told(scene, words), 1);    // the default style; no warning
+  EXPECT_EQ(told(scene, warning), 0);
+  EXPECT_EQ(told(scene + style("pe"), warning + "PotEng)"), 1);
+  EXPECT_EQ(told(scene + style("etotal epair"), warning + "TotEng E_pair)"), 1);
+  EXPECT_EQ(told(scene + style("ke"), words), 0);    // velocities it does see
+  EXPECT_EQ(told(scene + "compute e all pe/atom\n", of_compute), 1);
+  EXPECT_EQ(told(scene + "compute e all pe\n", of_compute), 1);
+  EXPECT_EQ(told(scene + "group none type 2\ncompute e none pe/atom\n", of_compute), 0);
+  // pairs have an energy to see, but the total is still not all
+  const auto pairs = scene + "pair_style lj/cut 0.01\npair_coeff * * 0 0.01\n";
+  EXPECT_EQ(told(pairs + style("pe epair"), words), 0);
+  EXPECT_EQ(told(pairs + style("pe etotal"), warning + "TotEng)"), 1);
+  EXPECT_EQ(told(pairs + "compute e all pe/atom\n", of_compute), 0);
 }
 
 // what a message asks for is the mistake itself
@@ -236,6 +337,39 @@ SERIAL_TEST(Doubts, MistakesAreNamed)
       "fix w all mpm/incompressible 0.05 1000\n";
   expect_error(flow + "fix heat all mpm/heat\nrun 1\n",
                "those of fix w (style mpm/incompressible) have neither");
+}
+
+// a command that ends too soon: the message has the names of all arguments that are missing
+SERIAL_TEST(Doubts, MissingArgumentsAreNamed)
+{
+  const auto missing = [](const std::string &command, const std::string &names) {
+    expect_error(START + GRID + command + "\n", "missing argument(s), needs " + names + " (");
+  };
+  missing("fix x all mpm", "h");
+  missing("fix x all mpm/boundary", "region or one or more of xlo xhi ylo yhi zlo zhi");
+  missing("fix x all mpm/boundary region", "region-ID");
+  missing("fix x all mpm/boundary xlo", "one of stick slip separate");
+  missing("fix x all mpm/boundary region b", "one of stick slip separate");
+  missing("fix x all mpm/material", "density or file");
+  missing("fix x all mpm/material file", "filename");
+  missing("fix x all mpm/incompressible", "h density");
+  missing("fix x all mpm/incompressible 0.02", "density");
+  missing("fix x all mpm/emit", "TYPE");
+  missing("fix x all mpm/refine", "coarse-ID fine-ID");
+  missing("fix x all mpm/refine grid", "fine-ID");
+  missing("fix x all mpm/cells", "fix-ID");
+  missing("compute x all mpm/atom", "name");
+  missing("compute x all mpm/error", "value exact");
+  missing("compute x all mpm/error x", "exact");
+  missing("region x mpm/mesh", "file scale x y z");
+  missing("region x mpm/mesh a.stl 1 0", "y z");
+  missing("dump x all mpm/grid/vtk 10 a.*.vtu", "fix-ID field");
+  missing("create_points", "type one of region box image mesh elements table");
+  missing("create_points 1", "one of region box image mesh elements table");
+  missing("create_points 1 region", "region-ID");
+  for (const char *style : {"mesh", "elements", "table", "image"})
+    missing(std::string("create_points 1 ") + style, "file");
+  missing("pair_style mpm/penalty\npair_coeff 1 1", "modulus");
 }
 
 // the limit falls between two looks of fix mpm/dt: what its message names runs

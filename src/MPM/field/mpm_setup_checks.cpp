@@ -419,6 +419,18 @@ void MPMSetupChecks::fixes()
     }
 }
 
+/** Is there something besides points that has an energy, so that the one of LAMMPS says something?
+ *  Forces of grains have none. */
+bool MPMSetupChecks::has_energies() const
+{
+  const auto styles = MPMPairStyle::all(*force);
+  return force->bond || force->angle || force->dihedral || force->improper || force->kspace ||
+      modify->n_energy_global > 0 ||
+      std::any_of(styles.begin(), styles.end(), [](const MPMPairStyle &style) {
+           return style.name != "zero" && !utils::strmatch(style.name, "^gran");
+         });
+}
+
 /** Computes that are made for atoms. Those of LAMMPS's own log are left to columns(). */
 void MPMSetupChecks::computes()
 {
@@ -428,15 +440,18 @@ void MPMSetupChecks::computes()
   static const char *const heat =
       "takes their motion for heat: use the temperature of compute mpm/atom, or give it a group "
       "without them";
-  static const std::pair<const char *, const char *> doubts[] = {{"^pressure", stress},
-                                                                 {"^stress/atom", stress},
-                                                                 {"^centroid/stress/", stress},
-                                                                 {"^temp$", heat},
-                                                                 {"^temp/", heat}};
+  static const char *const energy = "sees the energy of pairs, not that of their stress: use "
+                                    "compute mpm/energy, or the energy of "
+                                    "compute mpm/atom";
+  const char *const of_pairs = has_energies() ? nullptr : energy;
+  const std::pair<const char *, const char *> doubts[] = {
+      {"^pressure", stress}, {"^stress/atom", stress}, {"^centroid/stress/", stress},
+      {"^temp$", heat},      {"^temp/", heat},         {"^pe$", of_pairs},
+      {"^pe/atom", of_pairs}};
   for (const auto *compute : modify->get_compute_list())
     for (const auto &[style, what] : doubts) {
-      if (!utils::strmatch(compute->style, style) || utils::strmatch(compute->id, "^thermo_") ||
-          !told_of.insert(compute->id).second)
+      if (!what || !utils::strmatch(compute->style, style) ||
+          utils::strmatch(compute->id, "^thermo_") || !told_of.insert(compute->id).second)
         continue;
       const bigint all = points_in_both(lmp, 1, compute->groupbit);
       if (all && comm->me == 0)
@@ -449,23 +464,37 @@ void MPMSetupChecks::computes()
 void MPMSetupChecks::columns()
 {
   static const char *const common[] = {"Step", "Temp", "E_pair", "E_mol", "TotEng", "Press"};
-  if (told_of_columns || comm->me || !output->thermo) return;
+  if (comm->me || !output->thermo) return;
   std::vector<std::string> words;
   for (const auto &word : output->thermo->get_keywords())    // some may be empty
     if (!word.empty() && word != "Volume") words.push_back(word);
-  std::string found;
-  for (const char *const word : {"Temp", "Press", "Pxx", "Pyy", "Pzz", "Pxy", "Pxz", "Pyz"})
-    if (std::count(words.begin(), words.end(), word)) found += std::string(" ") + word;
-  if (found.empty()) return;
-  told_of_columns = true;
-  const auto text = fmt::format("of the log ({}) see the velocities of material points and the "
-                                "forces of pairs, not the temperature or stress of points: for "
-                                "these, use compute mpm/atom, and compute reduce ... ave",
-                                found.substr(1));
-  if (std::equal(words.begin(), words.end(), std::begin(common), std::end(common)))
-    utils::logmesg(lmp, "Fix mpm: columns {}\n", text);
-  else
-    error->warning(FLERR, "Fix mpm: columns {}", text);
+  const auto find = [&](std::initializer_list<const char *> names) {
+    std::string found;
+    for (const char *const word : names)
+      if (std::count(words.begin(), words.end(), word) &&
+          told_of.insert(std::string("column ") + word).second)
+        found += (found.empty() ? "" : " ") + std::string(word);
+    return found;
+  };
+  const auto tell = [&](const std::string &text) {
+    if (std::equal(words.begin(), words.end(), std::begin(common), std::end(common)))
+      utils::logmesg(lmp, "Fix mpm: columns {}\n", text);
+    else
+      error->warning(FLERR, "Fix mpm: columns {}", text);
+  };
+  const std::string atoms = find({"Temp", "Press", "Pxx", "Pyy", "Pzz", "Pxy", "Pxz", "Pyz"}),
+                    energies = has_energies()
+      ? find({"TotEng", "Enthalpy", "Econserve"})
+      : find({"PotEng", "TotEng", "Enthalpy", "Econserve", "E_pair", "E_vdwl", "E_mol"});
+  if (!atoms.empty())
+    tell(fmt::format("of the log ({}) see the velocities of material points and the forces of "
+                     "pairs, not the temperature or stress of points: for these, use compute "
+                     "mpm/atom, and compute reduce ... ave",
+                     atoms));
+  if (!energies.empty())
+    tell(fmt::format("of the log ({}) see the energy of pairs, not that of the stress of material "
+                     "points: for this, use compute mpm/energy",
+                     energies));
 }
 
 /** With the default skin of the units, lists and blocks of nodes may be rebuilt in each step. A

@@ -63,9 +63,8 @@ class MPMSetupChecks : protected Pointers {
  private:
   MPMField &field;
   MPMDoubts doubts;
-  bool warned_of_locking = false, warned_of_liquid = false, told_of_columns = false,
-       weighed = false;
-  std::set<std::string> told_of;    // IDs of computes
+  bool warned_of_locking = false, warned_of_liquid = false, weighed = false;
+  std::set<std::string> told_of;    // IDs of computes, columns of the log
 
   /** Is another fix an integrator of points of the field, too? */
   void integrators();
@@ -86,6 +85,7 @@ class MPMSetupChecks : protected Pointers {
   /** Do computes and columns of the log see a part of points only? */
   void computes();
   void columns();
+  bool has_energies() const;
   void skin();
   /** Are neighbor lists made as in the run that wrote the restart file? */
   void lists_after_restart();
