@@ -283,7 +283,7 @@ SERIAL_TEST(FullBox, HasTheVolumesOfItsPoints)
 SERIAL_TEST(FullRegion, HasTheVolumesOfItsPoints)
 {
   for (const int dim : {2, 3})
-    for (const double offset : {0.0, 0.25, 0.5}) {
+    for (const double offset : {0.0, 0.2, 0.5}) {
       Scene run(MPM_TEST::box(dim, "si", "f f f", "-3 7 -3 7 -3 7", 1, 0.3) +
                 (dim == 2
                      ? "region w block 0 4 0 4 INF INF\nregion o block 0 4 0 4 INF INF side out\n"
@@ -298,11 +298,22 @@ SERIAL_TEST(FullRegion, HasTheVolumesOfItsPoints)
           run.lmp->atom->vfrac[i] *= 1.2;
           run.mass()[i] *= 1.2;
         }
-      // no point reaches nodes behind the faces, which have (1/4)^3/6 of their room along an axis
-      EXPECT_NEAR(number_after(FILLED, log_of(run, "run 400\n")), 1.05,
-                  offset == 0.25 ? 0.003 : 2e-4)
+      // parts of cells in edges are not exact
+      EXPECT_NEAR(number_after(FILLED, log_of(run, "run 400\n")), 1.05, offset == 0.2 ? 3e-3 : 2e-4)
           << dim << " " << offset;
     }
+}
+
+SERIAL_TEST(FullRegion, EndsAnywhereInACell)
+{
+  Scene run(
+      plane("si", "f f", "0 4 -1 3.9", 1, 0.3) +
+      "region water block INF INF 0 3.5 INF INF\ncreate_points 1 region water spacing 0.5\n"
+      "displace_atoms all move 0 0.4 0\nfix grid all mpm 1 drift 0 origin 0 0\n"
+      "fix m all mpm/material density 1 eos tait 1e-6 7\n"
+      "region floor plane 0 0.4 0 0 1 0 side out\nfix floor all mpm/boundary region floor slip\n"
+      "timestep 1e-3\n");
+  EXPECT_NEAR(number_after(FILLED, log_of(run, "run 400\n")), 1.0, 5e-4);
 }
 
 // What fills a region is held there, as in a grip: it needs no room

@@ -8,11 +8,13 @@
 
 /* Cells that a surface cuts are halved along all axes, and their parts again, as long as the
  *  surface may go through them. Of the smallest parts, the closed share follows from the distance
- *  of their middle. Regions at rest are asked once in a run. */
+ *  of their middle, which is linear in cells away from edges. Regions at rest are asked once in a
+ *  run. */
 
 #include "field/mpm_free_room.h"
 
 #include "base/mpm_find_fixes.h"
+#include "base/mpm_lists.h"
 #include "domain.h"
 #include "field/mpm_field.h"
 
@@ -52,13 +54,22 @@ void MPMFreeRoom::init()
   at_rest.clear();
   moving.clear();
   of_block.clear();
+}
+
+void MPMFreeRoom::forget_cells()
+{
   of_cell.clear();
+  in_cells.clear();
+  closed_cell = OPEN;
 }
 
 void MPMFreeRoom::list_barriers()
 {
   if (known) return;
   known = true;
+  for (int k = 0; k < FUNCTIONS; k++)
+    for (int p = 0; p <= PARTS; p++)
+      inside[k][p] = integral_of_function(field.options.shape, (double) p / PARTS + 1 - k);
   for (auto *barrier : find_fixes<MPMBarrier>(lmp))
     if (barrier->keeps_out(field)) (barrier->changes_place() ? moving : at_rest).push_back(barrier);
 }
@@ -108,7 +119,6 @@ void MPMFreeRoom::find(const double *nodes, int nreal, std::vector<double> &shar
     std::copy(of.begin(), of.end(), share.begin() + (std::ptrdiff_t) ib * NODES_PER_BLOCK);
   };
   std::vector<std::size_t> with_moving;
-  near = at_rest;
   for (std::size_t ib = 0; ib < grid.blocks.size(); ib++) {
     const double *record = nodes + ib * NODES_PER_BLOCK * nreal;
     bool has_points = false;
@@ -130,10 +140,18 @@ void MPMFreeRoom::find(const double *nodes, int nreal, std::vector<double> &shar
     else
       set(ib, of_block[key] = shares(block, PARTS));
   }
-  of_cell.clear();
-  near.insert(near.end(), moving.begin(), moving.end());
+  forget_cells();
   for (const auto ib : with_moving) set(ib, shares(grid.blocks[ib], PARTS_IN_MOTION));
-  of_cell.clear();
+  forget_cells();
+}
+
+/** Does a face of the box limit the functions of nodes that reach this cell? */
+bool MPMFreeRoom::is_cut_by_box(int axis, int cell) const
+{
+  const auto &lattice = field.lattice;
+  const double low = (domain->boxlo[axis] - lattice.origin[axis]) / lattice.h,
+               high = (domain->boxhi[axis] - lattice.origin[axis]) / lattice.h;
+  return !lattice.periodic[axis] && !(cell - 1 - REACH > low && cell + 1 < high);
 }
 
 /** The integral of the function of a node along an axis up to t [node spacings], within the box. */
@@ -148,19 +166,21 @@ double MPMFreeRoom::in_box(int axis, int node, double t) const
       integral_of_function(shape, low - node);
 }
 
-/** Shares of the nodes of a block. */
+/** Shares of the nodes of a block. Only the regions next to it count, so that cells get the same
+ *  values from all blocks. */
 MPMFreeRoom::Shares MPMFreeRoom::shares(const Grid::Block &block, int parts)
 {
-  if (std::none_of(near.begin(), near.end(), [&](const auto *barrier) {
-        return is_near(block, *barrier);
-      }))
-    return {};
+  near.clear();
+  for (const auto *list : {&at_rest, &moving})
+    for (auto *barrier : *list)
+      if (is_near(block, *barrier)) near.push_back(barrier);
+  if (near.empty()) return {};
   const int dim = field.lattice.dim, side = field.grid.side;
   Shares all(NODES_PER_BLOCK, 0.0);    // first what is closed
   int first[3], cell[3] = {0, 0, 0};
   field.grid.node_index(block, 0, first);
   const auto add = [&]() {
-    const double *from = closed_in(cell, parts).data();
+    const double *from = closed_in(cell, parts);
     if (!from) return;
     int node[3] = {0, 0, 0};
     for (int k = 0; k < (dim == 3 ? FUNCTIONS : 1); k++)
@@ -188,30 +208,83 @@ MPMFreeRoom::Shares MPMFreeRoom::shares(const Grid::Block &block, int parts)
     int index[3];
     field.grid.node_index(block, n, index);
     double whole = 1.0;
-    for (int d = 0; d < dim; d++) whole *= in_box(d, index[d], index[d] + REACH);
+    for (int d = 0; d < dim; d++)
+      if (is_cut_by_box(d, index[d]) || is_cut_by_box(d, index[d] + REACH))
+        whole *= in_box(d, index[d], index[d] + REACH);
     all[n] = whole > 0.0 ? std::max(0.0, 1.0 - all[n] / whole) : 1.0;
   }
   return all;
 }
 
-/** Integrals of functions over the closed part of a cell. */
-const std::vector<double> &MPMFreeRoom::closed_in(const int *index, int parts)
+/** Integrals of functions over the closed part of a cell, null if nothing is closed. */
+const double *MPMFreeRoom::closed_in(const int *index, int parts)
 {
   const auto key = Grid::key(index);
   const auto found = of_cell.find(key);
-  if (found != of_cell.end()) return found->second;
+  if (found != of_cell.end())
+    return found->second == OPEN ? nullptr : in_cells[found->second].data();
 
   const auto &lattice = field.lattice;
-  Cell cell = {index, {}, {}, {}};
+  const double h = lattice.h, radius = 0.5 * h * std::sqrt((double) lattice.dim);
+  Cell cell(index);
+  double middle[3] = {0.0, 0.0, 0.0};
   lattice.node_position(index, cell.low);
   for (int d = 0; d < lattice.dim; d++) {
-    if (!lattice.periodic[d]) continue;    // else points are in the box
-    const double length = domain->boxhi[d] - domain->boxlo[d];
-    cell.low[d] -= length * std::floor((cell.low[d] - domain->boxlo[d]) / length + 1.0e-9);
+    if (lattice.periodic[d]) {    // points are in the box
+      const double length = domain->boxhi[d] - domain->boxlo[d];
+      cell.low[d] -= length * std::floor((cell.low[d] - domain->boxlo[d]) / length + 1.0e-9);
+    }
+    middle[d] = cell.low[d] + 0.5 * h;
+    cell.is_cut[d] = is_cut_by_box(d, index[d]);
   }
-  const int first[3] = {0, 0, 0};
-  add_closed(cell, first, PARTS, PARTS / parts);
-  return of_cell[key] = std::move(cell.closed);
+  int &at = of_cell[key];
+  at = OPEN;
+  const double distance = gap(middle, 1.001 * radius);
+  if (distance >= radius) return nullptr;
+  const bool is_closed =
+      distance <= -radius && std::none_of(cell.is_cut, cell.is_cut + 3, [](bool cut) {
+        return cut;
+      });
+  if (is_closed && closed_cell != OPEN)
+    at = closed_cell;
+  else {
+    at = (int) in_cells.size();
+    if (is_closed) closed_cell = at;
+    in_cells.push_back({});
+    cell.closed = in_cells.back().data();
+    for (int d = 0; d < lattice.dim; d++)
+      for (int k = 0; k < FUNCTIONS; k++)
+        for (int p = 0; p <= PARTS; p++)
+          cell.upto[d][k][p] = cell.is_cut[d]
+              ? in_box(d, index[d] - 1 + k, index[d] + (double) p / PARTS)
+              : inside[k][p];
+    const int first[3] = {0, 0, 0};
+    add_closed(cell, first, PARTS, PARTS / parts);
+  }
+  return in_cells[at].data();
+}
+
+/** Where the surface is smooth, the distance in a cell is linear: that at its middle and the slope
+ *  follow from the distances of the middles of its halves. */
+void MPMFreeRoom::find_slope(Cell &cell) const
+{
+  constexpr double SMOOTH = 0.02;    // largest difference from a plane [node spacings]
+  const int dim = field.lattice.dim, n = 1 << dim;
+  const double h = field.lattice.h, far = h * std::sqrt((double) dim);
+  double at[8], x[3] = {0.0, 0.0, 0.0}, mean = 0.0, most = 0.0;
+  for (int k = 0; k < n; k++) {
+    for (int d = 0; d < dim; d++) x[d] = cell.low[d] + ((k >> d & 1) ? 0.75 : 0.25) * h;
+    at[k] = gap(x, far);
+    mean += at[k] / n;
+    for (int d = 0; d < dim; d++) cell.slope[d] += ((k >> d & 1) ? at[k] : -at[k]) * 2.0 / (n * h);
+  }
+  for (int k = 0; k < n; k++) {
+    double plane = mean;
+    for (int d = 0; d < dim; d++) plane += ((k >> d & 1) ? 0.25 : -0.25) * h * cell.slope[d];
+    most = std::max(most, std::fabs(at[k] - plane));
+  }
+  cell.middle = mean;
+  cell.is_smooth = most < SMOOTH * h;
 }
 
 /** Adds what is closed in a part of a cell that begins at part and has this size along each axis;
@@ -221,11 +294,15 @@ void MPMFreeRoom::add_closed(Cell &cell, const int *part, int size, int least) c
   const int dim = field.lattice.dim;
   const double h = field.lattice.h, width = size * h / PARTS,
                radius = 0.5 * width * std::sqrt((double) dim);
-  double x[3] = {0.0, 0.0, 0.0};
-  for (int d = 0; d < dim; d++) x[d] = cell.low[d] + part[d] * h / PARTS + 0.5 * width;
-  const double distance = gap(x, 1.001 * radius);
+  double x[3] = {0.0, 0.0, 0.0}, distance = cell.middle;
+  for (int d = 0; d < dim; d++) {
+    x[d] = cell.low[d] + part[d] * h / PARTS + 0.5 * width;
+    distance += cell.slope[d] * (x[d] - cell.low[d] - 0.5 * h);
+  }
+  if (!cell.is_smooth) distance = gap(x, 1.001 * radius);
   if (distance >= radius) return;
   if (distance > -radius && size > least) {
+    if (size == PARTS) find_slope(cell);
     const int half = size / 2;
     for (int k = 0; k < (dim == 3 ? 2 : 1); k++)
       for (int j = 0; j < 2; j++)
@@ -237,18 +314,11 @@ void MPMFreeRoom::add_closed(Cell &cell, const int *part, int size, int least) c
   }
   const double share = std::max(0.0, std::min(1.0, 0.5 - distance / width));
   if (share == 0.0) return;
-  if (cell.closed.empty()) {    // the first part that is closed
-    cell.closed.assign((std::size_t)(dim == 3 ? FUNCTIONS : 1) * FUNCTIONS * FUNCTIONS, 0.0);
-    for (int d = 0; d < dim; d++)
-      for (int k = 0; k < FUNCTIONS; k++)
-        for (int p = 0; p <= PARTS; p++)
-          cell.upto[d][k][p] = in_box(d, cell.index[d] - 1 + k, cell.index[d] + (double) p / PARTS);
-  }
   double of[3][FUNCTIONS] = {};
   for (int d = 0; d < dim; d++)
     for (int k = 0; k < FUNCTIONS; k++)
       of[d][k] = cell.upto[d][k][part[d] + size] - cell.upto[d][k][part[d]];
-  double *sum = cell.closed.data();
+  double *sum = cell.closed;
   for (int k = 0; k < (dim == 3 ? FUNCTIONS : 1); k++)
     for (int j = 0; j < FUNCTIONS; j++) {
       const double across = share * of[1][j] * (dim == 3 ? of[2][k] : 1.0);
@@ -258,7 +328,7 @@ void MPMFreeRoom::add_closed(Cell &cell, const int *part, int size, int least) c
 
 double MPMFreeRoom::memory_usage() const
 {
-  double bytes = 0.0;
+  double bytes = bytes_of(in_cells);
   for (const auto &block : of_block) bytes += 64.0 + block.second.capacity() * sizeof(double);
   return bytes;
 }

@@ -14,6 +14,7 @@
 #include "pointers.h"
 #include "transfer/shape.h"
 
+#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -47,27 +48,41 @@ class MPMFreeRoom : protected Pointers {
 
   const MPMField &field;
   bool known = false;
+  double inside[FUNCTIONS][PARTS + 1] = {};           // as upto of a cell that no face limits
   std::vector<MPMBarrier *> at_rest, moving, near;    // near: those that count for this block
   using Shares = std::vector<double>;                 // of the nodes of a block; empty: all 1
   std::unordered_map<uint64_t, Shares> of_block;      // regions at rest alone
-  // sums over the closed part of a cell, for the nodes that reach it; empty: nothing is closed
-  std::unordered_map<uint64_t, std::vector<double>> of_cell;
+  // integrals of the functions of the nodes that reach a cell over its closed part; cells that are
+  // wholly closed and away from faces share theirs
+  static constexpr int OPEN = -1;
+  using Integrals = std::array<double, FUNCTIONS * FUNCTIONS * FUNCTIONS>;
+  std::vector<Integrals> in_cells;
+  std::unordered_map<uint64_t, int> of_cell;    // index in in_cells; OPEN: nothing is closed
+  int closed_cell = OPEN;
 
   struct Cell {
-    const int *index;
-    double low[3];                 // corner
-    std::vector<double> closed;    // as in of_cell
+    explicit Cell(const int *index) : index(index) {}
+
+    const int *index = nullptr;
+    double low[3] = {};    // corner
+    bool is_smooth = false;
+    double middle = 0.0, slope[3] = {};    // distance, if is_smooth
+    bool is_cut[3] = {};                   // by faces of the box
+    double *closed = nullptr;              // in in_cells
     // integrals of the functions of nodes from minus infinity to the planes between its parts,
-    // within the box; valid unless closed is empty
-    double upto[3][FUNCTIONS][PARTS + 1];
+    // within the box
+    double upto[3][FUNCTIONS][PARTS + 1] = {};
   };
 
   void list_barriers();
   double gap(const double *x, double far) const;
   bool is_near(const MPM_NS::Grid::Block &, const MPMBarrier &) const;
+  bool is_cut_by_box(int axis, int cell) const;
   double in_box(int axis, int node, double t) const;
   Shares shares(const MPM_NS::Grid::Block &, int parts);
-  const std::vector<double> &closed_in(const int *cell, int parts);
+  void forget_cells();
+  const double *closed_in(const int *cell, int parts);
+  void find_slope(Cell &) const;
   void add_closed(Cell &, const int *part, int size, int least) const;
 };
 

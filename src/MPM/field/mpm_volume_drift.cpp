@@ -51,6 +51,9 @@ static constexpr double MOST_SPREAD = 0.05;
 // rms difference of fillings from one where points have run away from each other: .18 and more
 // where pressures differ by so much, .003 in gas with shocks
 static constexpr double LEAST_MISFIT = 0.02;
+static const char NEXT_TO_REGIONS[] =
+    "Use more points per cell, a larger drift, or a smaller spacing; give each side of a wall with "
+    "concave edges a region and a fix mpm/boundary of its own";
 static const char GAS_NEEDS[] =
     "Use four points per cell and axis, shape cubic, or cpdi, and transfer apic; a smaller spacing "
     "does not help. What is not meant to expand needs walls around it, or the pressure outside: "
@@ -417,7 +420,8 @@ void MPMVolumeDrift::note(int every)
                    "times the room that they fill at step {}: volumes and places have drifted "
                    "apart, and so have pressures and densities. {}",
                    field.id(), 1.0 + drift, update->ntimestep,
-                   corrects ? "Use more points per cell, or a larger drift"
+                   corrects && !share.empty() ? NEXT_TO_REGIONS
+                       : corrects             ? "Use more points per cell, or a larger drift"
                        : gases.size() == field.materials.size() ? GAS_NEEDS
                        : !not_corrected.empty()                 ? not_corrected.c_str()
                        : field.options.drift > 0.0
