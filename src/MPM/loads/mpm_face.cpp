@@ -268,8 +268,8 @@ void MPMFace::check(const std::string &user, int igroup, double known_area) cons
   if (all[2] == 0.0 && region->nregion > 1 && MPMRegionSurface(region, domain->dimension).is_open())
     error->all(FLERR, Error::NOLASTLINE,
                "{}: region {} is made of regions with open faces, which have no inside by which "
-               "they could "
-               "be put together: use a fix of this style for each of them, or close their faces",
+               "they could be put together: use a fix of this style for each of them, or close "
+               "their faces",
                user, region->id);
   if (all[2] == 0.0)
     error->all(

@@ -63,8 +63,8 @@ class MPMWallGap {
   /** Finds the sums at the nodes of the blocks [slot] that are marked in near (and may find
    *  others). away: distance of a position from the wall, positive on the side of the material.
    *  It changes by no more than the position. reach: greatest distance that a node of the wall sees
-   *  (node spacings). more: distance beyond the range of nodes at the wall up
-   *  to which distances are needed (node spacings). Collective. */
+   *  (node spacings). more: distance beyond the range of nodes at the wall up to which distances
+   *  are needed (node spacings). Collective. */
   void map(MPMField &, const std::vector<char> &near, double reach, const MPMDistanceFrom &away,
            double more = 0.0);
 
