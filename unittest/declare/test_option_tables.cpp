@@ -20,6 +20,7 @@
 #include "elements/pair_mpm_sheet.h"
 #include "field/mpm_field_options.h"
 #include "flow/mpm_flow_options.h"
+#include "fracture/fix_mpm_fracture.h"
 #include "grains/fix_mpm_handshake.h"
 #include "grains/fix_mpm_immersed.h"
 #include "grains/fix_mpm_surface.h"
@@ -65,6 +66,7 @@ static std::map<std::string, std::string> files()
   add("fix_mpm_contact", MPMContactOptions().declare());
   add("fix_mpm_dt", MPMDtOptions().declare());
   add("fix_mpm_elements", MPMElementsOptions().declare(3));
+  add("fix_mpm_fracture", MPMFractureOptions().declare());
   add("fix_mpm_handshake", MPMHandshakeOptions().declare());
   add("fix_mpm_heat", MPMHeatOptions().declare(3));
   add("fix_mpm_immersed", MPMImmersedOptions().declare(3));

@@ -177,7 +177,7 @@ def test_the_guide_links_every_style_and_every_other_guide():
 def test_the_readme_counts_the_styles():
     names = ("no one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
              "seventeen eighteen nineteen twenty twenty-one twenty-two twenty-three twenty-four twenty-five twenty-six "
-             "twenty-seven twenty-eight twenty-nine thirty").split()
+             "twenty-seven twenty-eight twenty-nine thirty thirty-one thirty-two").split()
     text = " ".join(read(os.path.join(ROOT, "README.md")).split())
     have, wrong = list(styles()), []
     for begin, what in (("atom_style_", "atom style"), ("pair_", "pair style"), ("region_", "region"),

@@ -370,6 +370,10 @@ const Choice choices[] = {
        p.fixes += "fix nve10 atoms nve\nneigh_modify exclude group points all\n"
                   "fix bridge atoms mpm/handshake grid1 zone x 8.1 6\n";
      }},
+    {"fix mpm/fracture", "fracture",
+     [](Parts &p) {
+       p.fixes += "fix cracks all mpm/fracture surface yes law coulomb 0.3\n";
+     }},
     {"fix mpm/heat", "heat",
      [](Parts &p) {
        p.more_law = " thermal conducting 1.0 300 0.5 expansion 1e-4";

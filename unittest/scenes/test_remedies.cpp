@@ -1254,6 +1254,34 @@ const Remedy runs[] = {
      ANEW, SET_UP},
 };
 
+const std::string CRACKS = "fix cracks all mpm/fracture surface yes\n";
+
+const Remedy fractures[] = {
+    {"FractureScheme",
+     one(" scheme musl", CRACKS),
+     "use scheme usl",
+     {{"scheme musl", "scheme usl"}}},
+    {"FractureTotal",
+     one(" frame total", CRACKS),
+     "use frame updated",
+     {{"frame total", "frame updated"}}},
+    {"FractureShape",
+     one(" shape cpdi transfer flip 0.99", CRACKS),
+     "use shape quadratic",
+     {{"shape cpdi", "shape quadratic"}}},
+    {"FractureTransfer",
+     one(" transfer xpic 2", CRACKS),
+     "use transfer apic",
+     {{"transfer xpic 2", "transfer apic"}}},
+    {"FractureLocking",
+     one(" locking fbar", CRACKS),
+     "use locking none",
+     {{"locking fbar", "locking none"}}},
+    {"FractureImplicit", one("", CRACKS + EULER), "remove one of them", {{CRACKS, ""}}},
+    {"FractureRefine", refined("", CRACKS), "use one fix mpm", {{CRACKS, ""}}},
+    {"FractureMixture", mixture("", CRACKS), "remove it, and give pieces", {{CRACKS, ""}}},
+};
+
 std::vector<Remedy> all_remedies()
 {
   std::vector<Remedy> all;
@@ -1261,6 +1289,7 @@ std::vector<Remedy> all_remedies()
     all.insert(all.end(), std::begin(rows), std::end(rows));
   };
   append(contacts);
+  append(fractures);
   append(walls);
   append(heats);
   append(pores);

@@ -47,7 +47,8 @@ class MPMPlan : protected Pointers, private MPMStageList {
     AFTER_ACTIONS,     ///< node actions have acted; the ledger has not recorded it
     AFTER_SOLVE,       ///< nodes have their new velocities, points are at their old positions
     BEFORE_STRAIN,     ///< usl and musl: as AFTER_SOLVE, with the velocities that strain the points
-    AFTER_MOTION       ///< the step is complete except for its checks
+    POINTS_HAVE_MOVED,    ///< nothing has looked at them yet
+    AFTER_MOTION          ///< the step is complete except for its checks
   };
 
   std::vector<MPMField *> fields;

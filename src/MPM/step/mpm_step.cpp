@@ -226,6 +226,7 @@ void map_back(MPMPlan &plan)
 
 void end(MPMPlan &plan)
 {
+  plan.place(MPMPlan::POINTS_HAVE_MOVED);
   const auto watch = [&plan]() {
     plan.watch->moved();
   };
