@@ -25,7 +25,7 @@ PAGE = os.path.join(PAGES, "Howto_mpm_gallery.rst")
 TOPICS = {
     "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall hypervelocity "
                          "ring-on-block scratch blast-on-plate microstructure foam",
-    "Elastic bodies": "rubber-band beam arch buckling press-fit tube plate-with-hole refined-plate airbag folded-airbag tent cook-membrane tissue two-disks ring-collision spinning-disk incline vortex hare net",
+    "Elastic bodies": "rubber-band folds beam arch buckling press-fit tube plate-with-hole refined-plate airbag folded-airbag tent cook-membrane tissue two-disks ring-collision spinning-disk incline vortex hare net",
     "Heat": "cooling-plate finned-pipe quench casting friction-weld machining hot-grains",
     "Fluids and gases": "dam-break sloshing air-spring boat drop rayleigh-taylor cavity soft-disk pouring-honey coiling-honey extruder elastic-gate elastic-plate poiseuille shock-tube settling",
     "Soil and grains": "sand-column footing consolidation settlement half-space earthquake-slope levee submarine-slide landslide ball-in-sand rockfall hopper boulders-in-debris tyre-on-gravel "
