@@ -71,7 +71,7 @@ void MPMSplitNodes::find_records(const double *opening)
   const PointRows r = field.rows();
   const TransferStep s = field.step_data();
   points.clear();
-  sums.assign(width * field.grid.nnodes(), 0.0);
+  gaps.clear(sums, width);
   gaps.each_point_near([&](const MPMPointMap::ActiveBlock &a, int run, int i) {
     const auto &block = field.grid.blocks[a.slot];
     bool has_any = false;

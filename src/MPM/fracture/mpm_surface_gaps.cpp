@@ -21,7 +21,8 @@
 #include "atom.h"
 #include "base/mpm_lists.h"
 #include "base/mpm_points.h"
-#include "field/mpm_frame.h"
+#include "field/mpm_halo.h"
+#include "field/mpm_nodes.h"
 #include "field/mpm_passes.h"
 #include "field/mpm_stencil.h"
 #include "math_extra.h"
@@ -78,6 +79,51 @@ void MPMSurfaceGaps::sum(std::vector<double> &of, int width) const
   field.nodes.complete(of.data(), width, width);
 }
 
+/** Sums are made, and nodes looked at, in these blocks and those next to them within two blocks,
+ *  and where values of other ranks and of edges come to; all, if there are periodic images. */
+void MPMSurfaceGaps::look_at(std::vector<char> &near)
+{
+  const Grid &grid = field.grid;
+  for (int round = 0; round < 2; round++) {
+    const auto last = near;
+    for (std::size_t slot = 0; slot < near.size(); slot++)
+      if (last[slot])
+        for (const int next : grid.blocks[slot].slot)
+          if (next >= 0) near[next] = 1;
+  }
+  const auto add = [&](int64_t node) {
+    if (node >= 0) near[node / NODES_PER_BLOCK] = 1;
+  };
+  const auto &halo = *field.nodes.halo;
+  for (int k = 0; k < halo.sharers(); k++)
+    for (const int node : halo.shared_with(k)) add(node);
+  if (field.nodes.edges)
+    for (const auto &nodes : field.nodes.edges->lists)
+      for (const auto &edge : nodes)
+        for (const int64_t node : {edge.outside, edge.face, edge.inside}) add(node);
+  const bool *const periodic = field.lattice.periodic;
+  const bool all = std::any_of(periodic, periodic + dim, [](bool is) {
+    return is;
+  });
+  region.clear();
+  for (std::size_t slot = 0; slot < near.size(); slot++)
+    if (near[slot] || all) region.push_back((int) slot);
+}
+
+void MPMSurfaceGaps::clear(std::vector<double> &of, int width) const
+{
+  of.resize(std::max(of.size(), (std::size_t) width * field.grid.nnodes()));
+  const std::size_t block = (std::size_t) width * NODES_PER_BLOCK;
+  for (const int slot : region) std::fill_n(of.begin() + slot * block, block, 0.0);
+}
+
+/** Calls f(n) for all nodes that are looked at. */
+template <class F> void MPMSurfaceGaps::each_node(const F &f) const
+{
+  for (const int slot : region)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) f((std::size_t) slot * NODES_PER_BLOCK + n);
+}
+
 /** Sets the unit vector of a point towards the gap, and returns its strength, as a gradient per
  *  node spacing; 0: it has none. */
 double MPMSurfaceGaps::direction(int i, double *u) const
@@ -107,6 +153,9 @@ void MPMSurfaceGaps::find(const Surface &of_points)
   MPI_Allreduce(mine, any, 2, MPI_INT, MPI_MAX, world);
   has_gradients = any[1];
   if (!any[0]) return;
+  std::vector<char> near(field.grid.blocks.size(), 0);
+  for (const auto &point : on_surface) near[point.slot] = 1;
+  look_at(near);
   at.assign(field.grid.nnodes(), -1);
   if (has_gradients) find_gradients();
   if (!find_seeds()) return;
@@ -194,8 +243,9 @@ void MPMSurfaceGaps::mark(const std::vector<int> &which)
 {
   const int below = -2, above = 1, deep = dim == 3;    // cells around a node
   close.assign(which.size(), 0);
-  for (std::size_t n = 0; n < which.size(); n++) {
-    if (which[n] < 0) continue;
+  has_close.assign(field.grid.blocks.size(), 0);
+  each_node([&](std::size_t n) {
+    if (which[n] < 0) return;
     const auto &block = field.grid.blocks[n / NODES_PER_BLOCK];
     int index[3];
     field.grid.node_index((int64_t) n, index);
@@ -204,9 +254,11 @@ void MPMSurfaceGaps::mark(const std::vector<int> &which)
         for (int z = deep * below; z <= deep * above; z++) {
           const int cell[3] = {index[0] + x, index[1] + y, index[2] + z};
           const int64_t node = field.grid.locate_near(block, cell);
-          if (node >= 0) close[node] = 1;
+          if (node < 0) continue;
+          close[node] = 1;
+          has_close[node / NODES_PER_BLOCK] = 1;
         }
-  }
+  });
 }
 
 /** Nodes where the vectors of points on surfaces converge. Returns whether any rank has one.
@@ -216,7 +268,7 @@ bool MPMSurfaceGaps::find_seeds()
   // sums of vectors, places, their products, and weights
   enum { MEAN = 0, AT = 3, PRODUCT = 6, WEIGHT, ALL };
   const MPMStencil stencil(field);
-  sums.assign(ALL * field.grid.nnodes(), 0.0);
+  clear(sums, ALL);
   MPMStencil::Axes axes;
   for (const auto &point : on_surface) {
     double u[3];
@@ -240,14 +292,16 @@ bool MPMSurfaceGaps::find_seeds()
   }
   sum(sums, ALL);
   wanted.assign(field.grid.nnodes(), -1);
+  std::vector<char> near(field.grid.blocks.size(), 0);
   int mine = 0, any;
-  for (std::size_t n = 0; n < wanted.size(); n++) {
+  each_node([&](std::size_t n) {
     const double *const t = &sums[ALL * n];
-    if (!(t[WEIGHT] > 0.0)) continue;
+    if (!(t[WEIGHT] > 0.0)) return;
     const double covariance =
         (t[PRODUCT] - MathExtra::dot3(t + MEAN, t + AT) / t[WEIGHT]) / t[WEIGHT];
-    if (covariance < CONVERGING) wanted[n] = mine = 1;
-  }
+    if (covariance < CONVERGING) wanted[n] = near[n / NODES_PER_BLOCK] = mine = 1;
+  });
+  look_at(near);
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
 }
@@ -259,7 +313,8 @@ bool MPMSurfaceGaps::find_seeds()
 std::vector<MPMSurfaceGaps::Axes> MPMSurfaceGaps::find_candidates()
 {
   const MPMStencil stencil(field);
-  std::vector<double> reached(wanted.size(), 0.0);
+  std::vector<double> reached;
+  clear(reached, 1);
   mark(wanted);
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     const auto &block = field.grid.blocks[a.slot];
@@ -278,7 +333,7 @@ std::vector<MPMSurfaceGaps::Axes> MPMSurfaceGaps::find_candidates()
   // and weights
   enum { DYADS = 0, EVEN = 6, MEAN = 10, AT = 13, WEIGHT = 16, ALL };
   constexpr int OF[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-  sums.assign(ALL * field.grid.nnodes(), 0.0);
+  clear(sums, ALL);
   for (const auto &point : on_surface) {
     double u[3];
     const double strength = direction(point.i, u);
@@ -301,12 +356,12 @@ std::vector<MPMSurfaceGaps::Axes> MPMSurfaceGaps::find_candidates()
   sum(sums, ALL);
   std::vector<Axes> axes;
   wanted.assign(wanted.size(), -1);
-  for (std::size_t n = 0; n < wanted.size(); n++) {
+  each_node([&](std::size_t n) {
     double *const t = &sums[ALL * n];
-    if (!(t[WEIGHT] > 0.0)) continue;
+    if (!(t[WEIGHT] > 0.0)) return;
     for (int k = 0; k < 6; k++)
       t[DYADS + k] -= t[EVEN + OF[k][0]] * t[EVEN + OF[k][1]] / t[EVEN + 3];
-    if (t[DYADS] + t[DYADS + 1] + t[DYADS + 2] < ALIKE * t[EVEN + 3]) continue;
+    if (t[DYADS] + t[DYADS + 1] + t[DYADS + 2] < ALIKE * t[EVEN + 3]) return;
     wanted[n] = (int) axes.size();
     axes.push_back({principal_axis(t + DYADS)});
     const double length = MathExtra::len3(t + MEAN);
@@ -314,7 +369,7 @@ std::vector<MPMSurfaceGaps::Axes> MPMSurfaceGaps::find_candidates()
       axes.back()[1][d] = length > 0.0 ? t[MEAN + d] / length : 0.0;
       axes.back()[2][d] = t[AT + d] / t[WEIGHT];
     }
-  }
+  });
   mark(wanted);
   return axes;
 }
@@ -324,7 +379,7 @@ void MPMSurfaceGaps::find_sides(const std::vector<Axes> &axes)
 {
   constexpr int NAXES = 2;
   const MPMStencil stencil(field);
-  sums.assign(2 * WIDTH * NAXES * field.grid.nnodes(), 0.0);
+  clear(sums, 2 * WIDTH * NAXES);
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     double u[3];
     if (direction(i, u) < FLAT) return;
@@ -367,11 +422,11 @@ void MPMSurfaceGaps::find_sides(const std::vector<Axes> &axes)
     add((int64_t) n, node);
     return true;
   };
-  for (std::size_t n = 0; n < wanted.size(); n++) {
-    if (wanted[n] < 0) continue;
+  each_node([&](std::size_t n) {
+    if (wanted[n] < 0) return;
     const double *const axis = &sums[2 * WIDTH * NAXES * n];
     if (!look(n, axis)) look(n, axis + 2 * WIDTH);
-  }
+  });
 }
 
 void MPMSurfaceGaps::add(int64_t n, Node &node)
@@ -443,7 +498,7 @@ bool MPMSurfaceGaps::extend()
     facing.push_back(f);
   });
 
-  sums.assign(6 * field.grid.nnodes(), 0.0);
+  clear(sums, 6);
   const auto each = [&](const auto &use) {
     for (const auto &f : facing)
       stencil.visit(field.grid.blocks[f.slot], f.i, [&](const MPMStencil::Node &node) {
@@ -461,13 +516,14 @@ bool MPMSurfaceGaps::extend()
   sum(sums, 6);
   std::vector<int> which(wanted.size(), -1);
   std::vector<std::array<double, 3>> axes;
-  for (std::size_t n = 0; n < wanted.size(); n++)
+  each_node([&](std::size_t n) {
     if (wanted[n] >= 0 && at[n] < 0 && sums[6 * n] + sums[6 * n + 1] + sums[6 * n + 2] > 0.0) {
       which[n] = (int) axes.size();
       axes.push_back(principal_axis(&sums[6 * n]));
     }
+  });
 
-  sums.assign(ALL * field.grid.nnodes(), 0.0);
+  clear(sums, ALL);
   each([&](const Facing &f, const MPMStencil::Node &node, double weight) {
     const double along = MathExtra::dot3(f.normal, axes[which[node.number]].data());
     const double sign = along > 0.0 ? 1.0 : -1.0;
@@ -490,22 +546,22 @@ bool MPMSurfaceGaps::extend()
   });
   sum(sums, ALL);
   const std::size_t before = list.size();
-  for (std::size_t n = 0; n < which.size(); n++) {
-    if (which[n] < 0) continue;
+  each_node([&](std::size_t n) {
+    if (which[n] < 0) return;
     const double *const a = &sums[ALL * n], *const b = a + WIDTH;
     Node node = {};
-    if (!face_each_other(a, b, node)) continue;
+    if (!face_each_other(a, b, node)) return;
     // out of the body, as both surfaces are on the average
     double out[3], along = 0.0;
     for (int d = 0; d < 3; d++)
       out[d] =
           a[NORMAL + d] / MathExtra::len3(a + NORMAL) + b[NORMAL + d] / MathExtra::len3(b + NORMAL);
     for (int d = 0; d < dim; d++) along += a[TOWARDS + d] / (a[VOLUME] + b[VOLUME]) * out[d];
-    if (!node.against && along > OUTWARD * MathExtra::len3(out)) continue;
+    if (!node.against && along > OUTWARD * MathExtra::len3(out)) return;
     MathExtra::copy3(a + FACING, node.normal);
     MathExtra::norm3(node.normal);
     add((int64_t) n, node);
-  }
+  });
   mine = list.size() > before;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   return any;
@@ -516,7 +572,7 @@ bool MPMSurfaceGaps::extend()
 void MPMSurfaceGaps::smooth_normals()
 {
   const MPMStencil stencil(field);
-  sums.assign(3 * field.grid.nnodes(), 0.0);
+  clear(sums, 3);
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     if (!is_on_surface(i)) return;
     const auto &block = field.grid.blocks[a.slot];
@@ -553,7 +609,7 @@ void MPMSurfaceGaps::find_push()
 {
   enum { OF_SIDE = 4 };    // sum of unit vectors, and of weights
   const MPMStencil stencil(field);
-  sums.assign(2 * OF_SIDE * field.grid.nnodes(), 0.0);
+  clear(sums, 2 * OF_SIDE);
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     double u[3];
     if (!is_on_surface(i) || direction(i, u) < FLAT) return;
@@ -593,5 +649,5 @@ int MPMSurfaceGaps::side_of(const Node &node, int i, const double *r) const
 
 double MPMSurfaceGaps::memory_usage() const
 {
-  return bytes_of(list, at, on_surface, gradient, wanted, close, sums);
+  return bytes_of(list, at, on_surface, gradient, region, wanted, close, has_close, sums);
 }

@@ -67,7 +67,9 @@ class MPMSurfaceGaps : protected Pointers {
   int side_of(const Node &, int i, const double *r) const;
   bool is_on_surface(int i) const { return surface->value[i] >= surface->separable; }
   double volume(int i) const;
-  /** Sums of all ranks, [node][width]. Collective. */
+  /** Sets sums [node][width] to zero where each_point_near() may add something. */
+  void clear(std::vector<double> &sums, int width) const;
+  /** Sums of all ranks. Collective. */
   void sum(std::vector<double> &sums, int width) const;
   /** Calls f(active, run, i) for the points that reach nodes in the list, and for few others. */
   template <class F> void each_point_near(const F &f) const;
@@ -86,10 +88,14 @@ class MPMSurfaceGaps : protected Pointers {
   bool has_gradients = false;      // are there points on surfaces whose normal is not known?
   std::vector<double> gradient;    // [n][3] of s
   std::vector<int> wanted;         // [node] index of nodes that may be split; -1: not in it
+  std::vector<int> region;         // slots of the blocks that are looked at
   std::vector<char> close;         // [node] does a point in the cell above it reach marked nodes?
+  std::vector<char> has_close;     // [slot]
   std::vector<double> sums;        // [node][...]
 
   double direction(int i, double *u) const;
+  void look_at(std::vector<char> &near);
+  template <class F> void each_node(const F &f) const;
   void find_gradients();
   bool find_seeds();
   std::vector<Axes> find_candidates();
@@ -109,6 +115,10 @@ template <class F> void MPMSurfaceGaps::each_point_near(const F &f) const
   const MPMRows places = field.frame->places();
   for (const auto &a : map.active) {
     const auto &block = field.grid.blocks[a.slot];
+    if (std::none_of(block.slot, block.slot + 27, [&](int slot) {
+          return slot >= 0 && has_close[slot];
+        }))
+      continue;
     for (int k = a.first_run; k < a.last_run; k++)
       for (int i = map.runs[k].first; i < map.runs[k].last; i++) {
         int cell[3] = {0, 0, 0};
