@@ -53,7 +53,7 @@ static constexpr double SURFACE = 0.1;
 // places over the mean squared distances from these is at least this large. Both sides of a corner
 // that goes into a body look like this, too
 static constexpr double AGAINST = -0.5, AGAINST_IF_APART = 0.7, APART = 12.0;
-static constexpr int ROUNDS = 4;    // of extension
+static constexpr int ROUNDS = 2;    // of extension
 // distance of split nodes along the direction out of a body from which on this is no end of their
 // gap
 static constexpr double OUTWARD = 0.25;
@@ -122,6 +122,29 @@ template <class F> void MPMSurfaceGaps::each_node(const F &f) const
 {
   for (const int slot : region)
     for (int n = 0; n < NODES_PER_BLOCK; n++) f((std::size_t) slot * NODES_PER_BLOCK + n);
+}
+
+namespace {
+/** A node as a point sees it. r: from the node to the point [node spacings]. */
+struct Near {
+  int64_t number;
+  double weight, r[3];
+};
+}    // namespace
+
+/** Calls f(Near) for the nodes of point i, which is in the block: as MPMStencil::visit(), without
+ *  gradients. */
+template <class F>
+static void visit_nodes(const MPMField &field, const Grid::Block &block, int i, const F &f)
+{
+  MPMStencil::Axes axes;
+  MPMStencil(field).find_axes(block, i, axes);
+  for (int k0 = 0; k0 < axes.count[0]; k0++)
+    for (int k1 = 0; k1 < axes.count[1]; k1++)
+      for (int k2 = 0; k2 < axes.count[2]; k2++)
+        f(Near{axes.number(k0, k1, k2),
+               axes.w[0][k0] * axes.w[1][k1] * axes.w[2][k2],
+               {axes.r[0][k0], axes.r[1][k1], axes.r[2][k2]}});
 }
 
 /** Sets the unit vector of a point towards the gap, and returns its strength, as a gradient per
@@ -267,28 +290,22 @@ bool MPMSurfaceGaps::find_seeds()
 {
   // sums of vectors, places, their products, and weights
   enum { MEAN = 0, AT = 3, PRODUCT = 6, WEIGHT, ALL };
-  const MPMStencil stencil(field);
   clear(sums, ALL);
-  MPMStencil::Axes axes;
   for (const auto &point : on_surface) {
     double u[3];
     const double strength = direction(point.i, u);
     if (strength < FLAT) continue;
     const double V = volume(point.i) * strength;
-    stencil.find_axes(field.grid.blocks[point.slot], point.i, axes);
-    for (int k0 = 0; k0 < axes.count[0]; k0++)
-      for (int k1 = 0; k1 < axes.count[1]; k1++)
-        for (int k2 = 0; k2 < axes.count[2]; k2++) {
-          double *const t = &sums[ALL * axes.number(k0, k1, k2)];
-          const double weight = V * axes.w[0][k0] * axes.w[1][k1] * axes.w[2][k2];
-          const double r[3] = {axes.r[0][k0], axes.r[1][k1], axes.r[2][k2]};
-          for (int d = 0; d < 3; d++) {
-            t[MEAN + d] += weight * u[d];
-            t[AT + d] += weight * r[d];
-          }
-          t[PRODUCT] += weight * (u[0] * r[0] + u[1] * r[1] + u[2] * r[2]);
-          t[WEIGHT] += weight;
-        }
+    visit_nodes(field, field.grid.blocks[point.slot], point.i, [&](const Near &node) {
+      double *const t = &sums[ALL * node.number];
+      const double weight = V * node.weight;
+      for (int d = 0; d < 3; d++) {
+        t[MEAN + d] += weight * u[d];
+        t[AT + d] += weight * node.r[d];
+      }
+      t[PRODUCT] += weight * MathExtra::dot3(u, node.r);
+      t[WEIGHT] += weight;
+    });
   }
   sum(sums, ALL);
   wanted.assign(field.grid.nnodes(), -1);
@@ -312,20 +329,20 @@ bool MPMSurfaceGaps::find_seeds()
  *  Collective. */
 std::vector<MPMSurfaceGaps::Axes> MPMSurfaceGaps::find_candidates()
 {
-  const MPMStencil stencil(field);
   std::vector<double> reached;
   clear(reached, 1);
   mark(wanted);
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     const auto &block = field.grid.blocks[a.slot];
+    int64_t numbers[64];
+    int n = 0;
     bool is_next = false;
-    stencil.visit(block, i, [&](const MPMStencil::Node &node) {
+    visit_nodes(field, block, i, [&](const Near &node) {
+      numbers[n++] = node.number;
       is_next = is_next || wanted[node.number] >= 0;
     });
     if (is_next)
-      stencil.visit(block, i, [&](const MPMStencil::Node &node) {
-        reached[node.number] = 1.0;
-      });
+      for (int k = 0; k < n; k++) reached[numbers[k]] = 1.0;
   });
   sum(reached, 1);
 
@@ -339,7 +356,7 @@ std::vector<MPMSurfaceGaps::Axes> MPMSurfaceGaps::find_candidates()
     const double strength = direction(point.i, u);
     if (strength < FLAT) continue;
     const double V = volume(point.i) * strength;
-    stencil.visit(field.grid.blocks[point.slot], point.i, [&](const MPMStencil::Node &node) {
+    visit_nodes(field, field.grid.blocks[point.slot], point.i, [&](const Near &node) {
       if (!(reached[node.number] > 0.0)) return;
       double *const t = &sums[ALL * node.number];
       const double weight = V * node.weight, even = V * std::sqrt(std::sqrt(node.weight));
@@ -378,13 +395,12 @@ std::vector<MPMSurfaceGaps::Axes> MPMSurfaceGaps::find_candidates()
 void MPMSurfaceGaps::find_sides(const std::vector<Axes> &axes)
 {
   constexpr int NAXES = 2;
-  const MPMStencil stencil(field);
   clear(sums, 2 * WIDTH * NAXES);
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     double u[3];
     if (direction(i, u) < FLAT) return;
     const double V = volume(i);
-    stencil.visit(field.grid.blocks[a.slot], i, [&](const MPMStencil::Node &node) {
+    visit_nodes(field, field.grid.blocks[a.slot], i, [&](const Near &node) {
       const int k = wanted[node.number];
       if (k < 0) return;
       const double weight = V * node.weight;
@@ -471,7 +487,6 @@ bool MPMSurfaceGaps::extend()
   int mine = !list.empty(), any;
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (!any) return false;
-  const MPMStencil stencil(field);
 
   // of points next to split nodes: the normal away from their side, and the way to these nodes
   struct Facing {
@@ -482,8 +497,12 @@ bool MPMSurfaceGaps::extend()
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     Facing f = {i, a.slot, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
     double weights = 0.0;
-    stencil.visit(field.grid.blocks[a.slot], i, [&](const MPMStencil::Node &node) {
-      if (at[node.number] < 0) return;
+    bool is_open = false;    // is there a node to decide on?
+    visit_nodes(field, field.grid.blocks[a.slot], i, [&](const Near &node) {
+      if (at[node.number] < 0) {
+        is_open = is_open || wanted[node.number] >= 0;
+        return;
+      }
       const Node &split = list[at[node.number]];
       const double sign = side_of(split, i, node.r) == 0 ? 1.0 : -1.0;
       weights += node.weight;
@@ -492,7 +511,7 @@ bool MPMSurfaceGaps::extend()
         f.way[d] -= node.weight * node.r[d];
       }
     });
-    if (!(weights > 0.0 && MathExtra::len3(f.normal) > 0.0)) return;
+    if (!(is_open && weights > 0.0 && MathExtra::len3(f.normal) > 0.0)) return;
     MathExtra::norm3(f.normal);
     for (double &component : f.way) component /= weights;
     facing.push_back(f);
@@ -501,12 +520,12 @@ bool MPMSurfaceGaps::extend()
   clear(sums, 6);
   const auto each = [&](const auto &use) {
     for (const auto &f : facing)
-      stencil.visit(field.grid.blocks[f.slot], f.i, [&](const MPMStencil::Node &node) {
+      visit_nodes(field, field.grid.blocks[f.slot], f.i, [&](const Near &node) {
         if (wanted[node.number] >= 0 && at[node.number] < 0)
           use(f, node, volume(f.i) * node.weight);
       });
   };
-  each([&](const Facing &f, const MPMStencil::Node &node, double weight) {
+  each([&](const Facing &f, const Near &node, double weight) {
     double *const t = &sums[6 * node.number];
     for (int d = 0; d < 3; d++) t[d] += weight * f.normal[d] * f.normal[d];
     t[3] += weight * f.normal[0] * f.normal[1];
@@ -524,7 +543,7 @@ bool MPMSurfaceGaps::extend()
   });
 
   clear(sums, ALL);
-  each([&](const Facing &f, const MPMStencil::Node &node, double weight) {
+  each([&](const Facing &f, const Near &node, double weight) {
     const double along = MathExtra::dot3(f.normal, axes[which[node.number]].data());
     const double sign = along > 0.0 ? 1.0 : -1.0;
     double *const both = &sums[ALL * node.number], *const side = along > 0.0 ? both : both + WIDTH;
@@ -571,14 +590,13 @@ bool MPMSurfaceGaps::extend()
  *  hardly reach a node, or other surfaces of it may be near. Collective. */
 void MPMSurfaceGaps::smooth_normals()
 {
-  const MPMStencil stencil(field);
   clear(sums, 3);
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     if (!is_on_surface(i)) return;
     const auto &block = field.grid.blocks[a.slot];
     double normal[3] = {0.0, 0.0, 0.0};
     bool any = false;
-    stencil.visit(block, i, [&](const MPMStencil::Node &node) {
+    visit_nodes(field, block, i, [&](const Near &node) {
       if (at[node.number] < 0) return;
       const Node &split = list[at[node.number]];
       const double weight =
@@ -587,7 +605,7 @@ void MPMSurfaceGaps::smooth_normals()
       any = true;
     });
     if (!any) return;
-    stencil.visit(block, i, [&](const MPMStencil::Node &node) {
+    visit_nodes(field, block, i, [&](const Near &node) {
       if (at[node.number] < 0) return;
       const double weight =
           volume(i) * node.weight * (side_of(list[at[node.number]], i, node.r) == 0 ? 1.0 : -1.0);
@@ -608,12 +626,11 @@ void MPMSurfaceGaps::smooth_normals()
 void MPMSurfaceGaps::find_push()
 {
   enum { OF_SIDE = 4 };    // sum of unit vectors, and of weights
-  const MPMStencil stencil(field);
   clear(sums, 2 * OF_SIDE);
   each_point_near([&](const MPMPointMap::ActiveBlock &a, int, int i) {
     double u[3];
     if (!is_on_surface(i) || direction(i, u) < FLAT) return;
-    stencil.visit(field.grid.blocks[a.slot], i, [&](const MPMStencil::Node &node) {
+    visit_nodes(field, field.grid.blocks[a.slot], i, [&](const Near &node) {
       if (at[node.number] < 0) return;
       double *const side =
           &sums[OF_SIDE * (2 * node.number) + OF_SIDE * side_of(list[at[node.number]], i, node.r)];
