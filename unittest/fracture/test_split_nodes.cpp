@@ -319,6 +319,13 @@ TEST(BrokenStrip, IsTheSameOnRanksAndAfterARestart)
   Twins run(scene, 60, lines_again(scene), 200, 1e-10);
 }
 
+SERIAL_TEST(BadInput, NothingThatCanBreakIsToldOf)
+{
+  const std::string scene = two_blocks("transfer apic", 1.0, 1.0, 0.0) + "run 0\n";
+  EXPECT_EQ(times_said(replaced(scene, "surface yes", ""), "finds no surfaces"), 1);
+  EXPECT_EQ(times_said(scene, "WARNING"), 0);
+}
+
 TEST(BadInput, IsRefused)
 {
   const std::string scene = replaced(two_blocks("transfer apic", 1.0, 1.0, 0.0),

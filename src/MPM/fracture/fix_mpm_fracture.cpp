@@ -108,6 +108,16 @@ void FixMPMFracture::init()
 
 void FixMPMFracture::init_physics(MPMPlan &plan)
 {
+  const auto materials = find_fixes<FixMPMMaterial>(lmp);
+  if (surface == NONE && comm->me == 0 &&
+      std::none_of(materials.begin(), materials.end(), [](const auto *material) {
+        return material->damage >= 0;
+      }))
+    error->warning(
+        FLERR,
+        "Fix mpm/fracture {} finds no surfaces, as no material has a damage: give one to "
+        "what may break, or use surface yes",
+        id);
   bodies.clear();
   for (auto *field : plan.fields) {
     const auto &o = field->options;
