@@ -1,7 +1,7 @@
 // This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
 // License, version 2; see the file LICENSE.
 
-// labels: physics mpi restart
+// labels: physics mpi restart ranks input
 // mpi: 1 3
 // timeout: 900
 
@@ -135,6 +135,19 @@ SERIAL_PARAMETER_TEST(Meeting, IsThatOfTwoFields, double, Values(0.0, 22.5, 45.0
   EXPECT_NEAR(measured("least gap", least[0]), measured("of two fields", least[1]), 0.15);
   EXPECT_GT(measured("speed", speed[0]), 0.0);
   EXPECT_NEAR(speed[0], measured("of two fields", speed[1]), 0.1 * speed[1]);
+}
+
+// Nodes keep their old velocities for an account of energy only; sides do so always
+SERIAL_TEST(Meeting, WorkIsTheSameWithoutAnAccount)
+{
+  const std::string scene =
+      replaced(two_blocks("transfer apic", 0.5, -1.0, 0.4), "fracture surface yes",
+               "fracture surface yes law coulomb 0.3");
+  Scene with(scene + "run 200\n"),
+      without(replaced(scene, "compute e all mpm/energy\n", "") + "run 200\n");
+  const double work = measured("work", with.evaluate("f_cracks[2]"));
+  EXPECT_GT(work, 0.1);
+  EXPECT_NEAR(without.evaluate("f_cracks[2]"), work, 1e-12 * work);
 }
 
 // Cubes in space
@@ -311,6 +324,29 @@ TEST(Sides, RanksAgreeAlsoAfterARestart)
   EXPECT_GT(run.whole.evaluate("f_cracks[2]"), 0.0);
   EXPECT_EQ(run.whole.evaluate("f_cracks[2]"), run.again.evaluate("f_cracks[2]"));
   EXPECT_NEAR(run.whole.evaluate("f_cracks[2]"), run.serial.evaluate("f_cracks[2]"), 1e-9);
+}
+
+// Bodies across periodic faces, of regular arrays of points, for which several axes are alike
+TEST(Sides, AreNotAMatterOfRounding)
+{
+  const std::string scene = space("metal", "p p f", "0 48 0 24 -40 20", 2, 2.0) + R"(
+region a block 20 48 4 20 -8 0
+region b block 0 14 4 20 -8 0
+region c block 10 30 2 22 1 8
+fix grid all mpm 2.0 transfer aflip 0.99 apart ignore
+create_points 1 region a ppc 2
+create_points 1 region b ppc 2
+create_points 2 region c ppc 2
+group c type 2
+fix m all mpm/material density 2.0 neohookean 1.0e5 0.25
+fix cracks all mpm/fracture surface yes law coulomb 0.2
+velocity c set 3.0 2.0 -3.0
+velocity all set 1.0 0.5 0 sum yes
+fix step all mpm/dt 0.4
+fix bal all balance 20 1.1 shift xy 10 1.1
+)";
+  Twins run(scene, 14, lines_again(scene), 16, 1e-11);
+  EXPECT_GT(run.whole.evaluate("f_cracks[2]"), 0.0);
 }
 
 TEST(BrokenStrip, IsTheSameOnRanksAndAfterARestart)

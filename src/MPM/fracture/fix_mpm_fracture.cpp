@@ -41,6 +41,8 @@ using Data = MPMStageData;    // what stages read and write
 // openings [node spacings]: from which on volumes tell more; of free surfaces at the start, of
 // which two may be those of a corner that goes into a body; of what has been apart, and most
 static constexpr double FAR = 0.5, FREE = 0.75, APART = 0.9, MOST = 1.0;
+// share of the volume of a node that must not decide whether surfaces touch
+static constexpr double ROUNDING = 1.0e-8;
 // component of a unit vector before the first run
 static constexpr double UNKNOWN = 2.0;
 
@@ -271,7 +273,7 @@ void FixMPMFracture::touch(Body &body)
                           (int) (node.number % NODES_PER_BLOCK), index);
     bool mirrored;
     const double inside = body.inside.at(index, dim, mirrored);
-    const bool is_far = node.opening >= far, is_full = node.filled >= inside;
+    const bool is_far = node.opening >= far, is_full = node.filled >= inside * (1.0 - ROUNDING);
     const bool touches = is_far ? is_full : node.opening + dt * parting() <= 0.0;
     if (touches) {
       // work of the impulses, along the mean of the velocities at the start and at the end

@@ -54,20 +54,23 @@ static void each_node(const MPMField &field, const Grid::Block &block, int i, co
 }
 
 /** The reals of a node in a tile. */
-double *MPMSplitNodes::tile_entry(double *tile, const int *base, const int *index) const
+double *MPMSplitNodes::tile_entry(double *tile, int width, const int *base, const int *index) const
 {
   const int order = stencil_order(field.options.shape);
   int entry = (index[0] - base[0]) * tile_stride_x(dim, order) +
       (index[1] - base[1]) * tile_stride_y(dim, order);
   if (dim == 3) entry += index[2] - base[2];
-  return tile + nreal * entry;
+  return tile + width * entry;
 }
 
 /** Sums of the sides, with the kernel of the step for one point at a time. */
 void MPMSplitNodes::find_records(const double *opening)
 {
-  const int OTHERS = 2 * nreal, width = OTHERS + 3;    // volume; weight and opening of surfaces
+  const int OTHERS = 2 * NREAL, width = OTHERS + 3;    // volume; weight and opening of surfaces
   MPMPointMap &map = *field.map;
+  // these keep the velocity of the start of the step, also where the nodes do not
+  const auto to_nodes = field.frame->kernels(
+      field.options.strains_by_gradient() ? TPIC : field.options.transfer, true);
   const PointRows r = field.rows();
   const TransferStep s = field.step_data();
   points.clear();
@@ -87,24 +90,24 @@ void MPMSplitNodes::find_records(const double *opening)
     one.last = i + 1;
     int box[6];
     reset_box(box);
-    run_to_tile(field, field.kernel.p2g, r, s, one, base, box);
+    run_to_tile(field, to_nodes.p2g, r, s, one, base, box);
     const double V = gaps.volume(i);
     const bool on_surface = gaps.is_on_surface(i);
     each_node(field, block, i,
               [&](int64_t n, const int *index, double weight, const double *place) {
-                double *const entry = tile_entry(map.tile, base, index);
+                double *const entry = tile_entry(map.tile, NREAL, base, index);
                 const int k = gaps.at[n];
                 if (k >= 0) {
                   double *const node = &sums[width * n];
-                  double *const side = node + nreal * gaps.side_of(gaps.list[k], i, place);
-                  for (int lane = 0; lane < nreal; lane++) side[lane] += entry[lane];
+                  double *const side = node + NREAL * gaps.side_of(gaps.list[k], i, place);
+                  for (int lane = 0; lane < NREAL; lane++) side[lane] += entry[lane];
                   node[OTHERS] += V * weight;
                   if (on_surface) {
                     node[OTHERS + 1] += V * weight;
                     node[OTHERS + 2] += V * weight * opening[i];
                   }
                 }
-                std::fill_n(entry, nreal, 0.0);
+                std::fill_n(entry, NREAL, 0.0);
               });
   });
   rising.resize(points.size());
@@ -118,7 +121,7 @@ void MPMSplitNodes::find_records(const double *opening)
   std::vector<MPMSurfaceGaps::Node> kept;
   records.clear();
   for (auto &node : gaps.list) {
-    const double *const found = &sums[width * node.number], a = found[3], b = found[nreal + 3];
+    const double *const found = &sums[width * node.number], a = found[3], b = found[NREAL + 3];
     gaps.at[node.number] = -1;
     if (!(std::min(a, b) > LEAST_SHARE * (a + b))) continue;
     gaps.at[node.number] = (int) kept.size();
@@ -140,7 +143,7 @@ bool MPMSplitNodes::find(const MPMSurfaceGaps::Surface &surface)
   MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, world);
   if (!any) return false;
   find_records(surface.opening);
-  field.kernels->solve_nodes(records.data(), 2 * (int) gaps.list.size(), nreal, field.step_dt(),
+  field.kernels->solve_nodes(records.data(), 2 * (int) gaps.list.size(), NREAL, field.step_dt(),
                              field.least_node_mass);
   // forces that points do not give are for both sides alike
   remembered.assign(gaps.list.size() * nreal, 0.0);
@@ -162,6 +165,7 @@ void MPMSplitNodes::remember()
 
 void MPMSplitNodes::follow(const std::vector<char> &held)
 {
+  field.nodes.complete_velocities();    // of periodic images, which may be in the list
   for (int k = 0; k < (int) gaps.list.size(); k++) {
     const double *const now = field.grid.record(gaps.list[k].number);
     const double *const before = &remembered[(std::size_t) k * nreal];
@@ -178,7 +182,6 @@ void MPMSplitNodes::follow(const std::vector<char> &held)
 
 void MPMSplitNodes::find_motion()
 {
-  field.nodes.complete_velocities();
   MPMPointMap &map = *field.map;
   const auto &kernel = field.kernel;
   const PointRows r = field.rows();
@@ -203,7 +206,7 @@ void MPMSplitNodes::find_motion()
                   [&](int64_t n, const int *index, double, const double *from_node) {
                     const int k = gaps.at[n];
                     if (k < 0) return;
-                    double *const entry = tile_entry(map.tile_load, base, index);
+                    double *const entry = tile_entry(map.tile_load, nreal, base, index);
                     if (back) {
                       std::copy_n(saved[n_saved++].data(), nreal, entry);
                       return;

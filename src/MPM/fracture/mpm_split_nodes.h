@@ -31,8 +31,9 @@ class MPMSplitNodes : protected Pointers {
    *  momentum equation, as records of the nodes have them. Nodes must have had the momentum
    *  equation. Returns whether there are any on this rank. Collective. */
   bool find(const MPMSurfaceGaps::Surface &);
-  /** Record of a side (0 or 1) of a node in the list: as those of the nodes. */
-  double *record(int k, int side) { return &records[((std::size_t) 2 * k + side) * nreal]; }
+  /** Record of a side (0 or 1) of a node in the list: as those of nodes that keep their velocity of
+   *  the start of the step. */
+  double *record(int k, int side) { return &records[((std::size_t) 2 * k + side) * NREAL]; }
   /** Velocities of the records of nodes at this moment; see follow(). */
   void remember();
   /** Gives both sides what has changed the nodes since remember(); held: bits of the components
@@ -60,8 +61,9 @@ class MPMSplitNodes : protected Pointers {
   MPMSurfaceGaps gaps;
   MPMField &field;
   const int dim;
-  int nreal = 0;
-  std::vector<double> sums;    // [node][...]
+  static constexpr int NREAL = 8;    // of a record of a side
+  int nreal = 0;                     // of one of the nodes
+  std::vector<double> sums;          // [node][...]
   std::vector<double> records, remembered;
   std::vector<Point> points;     // in the order of blocks
   std::vector<int> rising;       // their indices, by rising i
@@ -70,7 +72,7 @@ class MPMSplitNodes : protected Pointers {
 
   void find_records(const double *opening);
   std::vector<int>::const_iterator first_from(int i) const;
-  double *tile_entry(double *tile, const int *base, const int *index) const;
+  double *tile_entry(double *tile, int width, const int *base, const int *index) const;
 };
 
 }    // namespace LAMMPS_NS

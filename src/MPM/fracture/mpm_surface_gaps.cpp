@@ -32,6 +32,8 @@
 using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
+// limits are no values that regular arrays of points have, where round-off would decide
+
 // a gradient of s below this one, per node spacing, has no direction
 static constexpr double FLAT = 0.02;
 // strength of a normal that is known, as a gradient per node spacing; that from which on a vector
@@ -39,24 +41,25 @@ static constexpr double FLAT = 0.02;
 static constexpr double TYPICAL = 0.35, STEEP = 0.1;
 // covariance of vectors and places below which vectors converge [node spacings]; that of vectors
 // below which they have the same direction
-static constexpr double CONVERGING = -0.003, ALIKE = 1.0e-6;
+static constexpr double CONVERGING = -0.0031, ALIKE = 1.0e-6;
 // component of a vector along the axis of a node that it must have to count for a side
-static constexpr double ALONG = 0.2;
+static constexpr double ALONG = 0.21;
 // largest component along the mean vector of a point that is in front of the mean place by at least
 // this distance [node spacings], and so on the other side
-static constexpr double ASIDE = 0.5, IN_FRONT = 0.5;
+static constexpr double ASIDE = 0.51, IN_FRONT = 0.53;
 // sides have surfaces where the volume of points on the surface is at least this share of that of
 // the smaller side
-static constexpr double SURFACE = 0.1;
+static constexpr double SURFACE = 0.107;
 // cosine of the angle between the mean vectors of two sides that are against each other; and of
 // sides that have been apart, and between which there is nothing, as the squared distance of their
 // places over the mean squared distances from these is at least this large. Both sides of a corner
 // that goes into a body look like this, too
-static constexpr double AGAINST = -0.5, AGAINST_IF_APART = 0.7, APART = 12.0;
+static constexpr double AGAINST = -0.51, AGAINST_IF_APART = 0.69, APART = 12.3;
 static constexpr int ROUNDS = 2;    // of extension
 // distance of split nodes along the direction out of a body from which on this is no end of their
 // gap
-static constexpr double OUTWARD = 0.25;
+static constexpr double OUTWARD = 0.27;
+static constexpr double ROUNDING = 1.0e-9;    // of distances and vectors that may be zero
 // what the mean of unit vectors of a side lacks to 1, up to which the side is even
 static constexpr double UNEVEN = 0.001;
 // sums of a side over its points, on the surface but for the volume: weight, opening, place, its
@@ -247,17 +250,22 @@ void MPMSurfaceGaps::find_gradients()
   });
 }
 
-/** The first principal axis of a symmetric matrix xx yy zz xy xz yz. */
+/** The first principal axis of a symmetric matrix xx yy zz xy xz yz. Where several are alike, as in
+ *  regular arrays of points, small differences of the coordinate axes decide, and not round-off. */
 static std::array<double, 3> principal_axis(const double *t)
 {
+  constexpr double SMALL = 1.0e-6, DIFFERENT[3] = {3.0, 2.0, 1.0};
+  const double part = SMALL * (t[0] + t[1] + t[2]);
   Eigen::Matrix3d dyads;
   dyads << t[0], t[3], t[4], t[3], t[1], t[5], t[4], t[5], t[2];
+  for (int d = 0; d < 3; d++) dyads(d, d) += part * DIFFERENT[d];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(dyads);
   const Eigen::Vector3d axis = principal.eigenvectors().col(2);
   // the sign is of no importance, but must be the same on all ranks
-  int largest = 0;
-  axis.cwiseAbs().maxCoeff(&largest);
-  const double sign = axis[largest] < 0.0 ? -1.0 : 1.0;
+  const double large = axis.cwiseAbs().maxCoeff() - SMALL;
+  int first = 0;
+  while (std::fabs(axis[first]) < large) first++;
+  const double sign = axis[first] < 0.0 ? -1.0 : 1.0;
   return {sign * axis[0], sign * axis[1], sign * axis[2]};
 }
 
@@ -545,8 +553,9 @@ bool MPMSurfaceGaps::extend()
   clear(sums, ALL);
   each([&](const Facing &f, const Near &node, double weight) {
     const double along = MathExtra::dot3(f.normal, axes[which[node.number]].data());
-    const double sign = along > 0.0 ? 1.0 : -1.0;
-    double *const both = &sums[ALL * node.number], *const side = along > 0.0 ? both : both + WIDTH;
+    const double sign = along > ROUNDING ? 1.0 : -1.0;
+    double *const both = &sums[ALL * node.number],
+                  *const side = along > ROUNDING ? both : both + WIDTH;
     double u[3];
     const double strength = direction(f.i, u);
     side[VOLUME] += weight;
@@ -661,7 +670,7 @@ int MPMSurfaceGaps::side_of(const Node &node, int i, const double *r) const
   for (int d = 0; d < dim; d++) beyond += 2.0 * (r[d] - node.middle[d]) * node.normal[d];
   const double strength = direction(i, u);
   if (strength > 0.0) beyond -= std::min(1.0, strength / STEEP) * MathExtra::dot3(u, node.normal);
-  return beyond < 0.0 ? 0 : 1;
+  return beyond < ROUNDING ? 0 : 1;
 }
 
 double MPMSurfaceGaps::memory_usage() const
