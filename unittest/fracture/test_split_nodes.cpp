@@ -132,9 +132,9 @@ SERIAL_PARAMETER_TEST(Meeting, IsThatOfTwoFields, double, Values(0.0, 22.5, 45.0
     EXPECT_NEAR(measured("residual", e[13]), 0.0, 0.002 * energy);
     if (k == 0) EXPECT_NEAR(e[7], -run.evaluate("f_cracks[2]"), 1e-12 * energy);
   }
-  EXPECT_NEAR(measured("least gap", least[0]), measured("of two fields", least[1]), 0.15);
+  EXPECT_NEAR(measured("least gap", least[0]), measured("of two fields", least[1]), 0.02);
   EXPECT_GT(measured("speed", speed[0]), 0.0);
-  EXPECT_NEAR(speed[0], measured("of two fields", speed[1]), 0.1 * speed[1]);
+  EXPECT_NEAR(speed[0], measured("of two fields", speed[1]), 0.01 * speed[1]);
 }
 
 // Nodes keep their old velocities for an account of energy only; sides do so always

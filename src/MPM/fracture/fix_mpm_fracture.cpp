@@ -120,6 +120,7 @@ void FixMPMFracture::init_physics(MPMPlan &plan)
         "Fix mpm/fracture {} finds no surfaces, as no material has a damage: give one to "
         "what may break, or use surface yes",
         id);
+  walls = find_fixes<FixMPMBoundary>(lmp);
   bodies.clear();
   for (auto *field : plan.fields) {
     const auto &o = field->options;
@@ -133,7 +134,8 @@ void FixMPMFracture::init_physics(MPMPlan &plan)
          {o.averages_strain() || o.averages_stress(), "locking", "use locking none"},
          {o.smooths_volumes(), "smooth", "it is for fluids, which have no cracks: drop it"},
          {o.heats(), "heat", "drop it"},
-         {o.has_light_nodes(), "light", "use light 0"}});
+         {o.has_light_nodes(), "light", "use light 0"},
+         {o.modified_edges, "edges modified", "use edges plain"}});
     field->stretching.push_back(this);
     bodies.push_back(
         std::make_unique<Body>(Body{field, MPMSplitNodes(lmp, *field), {}, {}, false, 0.0, {}}));
@@ -143,7 +145,7 @@ void FixMPMFracture::init_physics(MPMPlan &plan)
   }
 }
 
-/** Of bodies at the start: points that come later, or change hands, have been inside of them. */
+/** Also of points that have come since the last run. */
 void FixMPMFracture::setup_points()
 {
   for (const auto &body : bodies) mark_surfaces(*body->field);
@@ -330,7 +332,6 @@ void FixMPMFracture::account_for_sides(Body &body) const
 void FixMPMFracture::follow(Body &body)
 {
   if (!body.is_split) return;
-  const auto walls = find_fixes<FixMPMBoundary>(lmp);
   body.held.clear();
   if (!walls.empty()) body.held.assign(body.field->grid.nnodes(), 0);
   for (auto *wall : walls) wall->mark_prescribed(*body.field, body.held);

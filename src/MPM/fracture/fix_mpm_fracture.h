@@ -81,6 +81,7 @@ class FixMPMFracture :
     std::vector<char> held;
   };
   std::vector<std::unique_ptr<Body>> bodies;
+  std::vector<class FixMPMBoundary *> walls;
   double lost = 0.0;    // energy that contact has taken so far, of this rank
 
   bool is_marked(int i) const;

@@ -100,7 +100,7 @@ struct FineNodes {
   void sum()
   {
     MPMEdges faces(field.lmp, field);
-    if (!field.nodes.edges) faces.find(true);
+    faces.find(true);
     for (int a = dim - 1; a >= 0; a--)
       for (const auto &e : faces.lists[a])
         for (int part = 0; part < width; part++) {

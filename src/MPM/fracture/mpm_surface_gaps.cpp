@@ -83,7 +83,7 @@ void MPMSurfaceGaps::sum(std::vector<double> &of, int width) const
 }
 
 /** Sums are made, and nodes looked at, in these blocks and those next to them within two blocks,
- *  and where values of other ranks and of edges come to; all, if there are periodic images. */
+ *  and where values of other ranks come to; all, if there are periodic images. */
 void MPMSurfaceGaps::look_at(std::vector<char> &near)
 {
   const Grid &grid = field.grid;
@@ -94,16 +94,9 @@ void MPMSurfaceGaps::look_at(std::vector<char> &near)
         for (const int next : grid.blocks[slot].slot)
           if (next >= 0) near[next] = 1;
   }
-  const auto add = [&](int64_t node) {
-    if (node >= 0) near[node / NODES_PER_BLOCK] = 1;
-  };
   const auto &halo = *field.nodes.halo;
   for (int k = 0; k < halo.sharers(); k++)
-    for (const int node : halo.shared_with(k)) add(node);
-  if (field.nodes.edges)
-    for (const auto &nodes : field.nodes.edges->lists)
-      for (const auto &edge : nodes)
-        for (const int64_t node : {edge.outside, edge.face, edge.inside}) add(node);
+    for (const int node : halo.shared_with(k)) near[node / NODES_PER_BLOCK] = 1;
   const bool *const periodic = field.lattice.periodic;
   const bool all = std::any_of(periodic, periodic + dim, [](bool is) {
     return is;
