@@ -104,6 +104,9 @@ struct Sample {
      "damage rankine 1e9 soften energy 1e6 weibull 8 1 1"},
     {"grady_kipp",
      "density 2700 eos linear 70e9 strength elastic 26e9 damage grady/kipp 1e20 8 1000 7e10"},
+    {"phasefield",
+     "density 2700 eos linear 70e9 strength elastic 26e9 "
+     "damage phasefield 1e6 1.0 model cohesive 1e9"},
     {"tait", "density 1000 eos tait 2.2e9 7"},
     {"water", "density 1000 eos tait 2.2e9 7 cutoff -1e5 viscosity newtonian 1e-3"},
     {"drucker_prager", "density 1600 drucker/prager 1e8 0.3 30 dilatancy 5"},

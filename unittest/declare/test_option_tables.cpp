@@ -21,6 +21,7 @@
 #include "field/mpm_field_options.h"
 #include "flow/mpm_flow_options.h"
 #include "fracture/fix_mpm_fracture.h"
+#include "fracture/fix_mpm_phasefield.h"
 #include "grains/fix_mpm_handshake.h"
 #include "grains/fix_mpm_immersed.h"
 #include "grains/fix_mpm_surface.h"
@@ -67,6 +68,7 @@ static std::map<std::string, std::string> files()
   add("fix_mpm_dt", MPMDtOptions().declare());
   add("fix_mpm_elements", MPMElementsOptions().declare(3));
   add("fix_mpm_fracture", MPMFractureOptions().declare());
+  add("fix_mpm_phasefield", MPMPhaseFieldOptions().declare());
   add("fix_mpm_handshake", MPMHandshakeOptions().declare());
   add("fix_mpm_heat", MPMHeatOptions().declare(3));
   add("fix_mpm_immersed", MPMImmersedOptions().declare(3));

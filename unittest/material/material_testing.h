@@ -457,6 +457,9 @@ inline const Sample samples[] = {
     {"rankine",
      "density 2400 eos linear 2e10 strength elastic 1.5e10 damage rankine 1e7 soften energy 1e8 "
      "weibull 5 1 7"},
+    {"phasefield",
+     "density 2400 eos linear 2e10 strength elastic 1.5e10 damage phasefield 1e8 1.0 model "
+     "cohesive 1e7 after friction 0.5"},
     {"grady/kipp",
      "density 2700 eos linear 2e10 strength elastic 1.5e10 "
      "damage grady/kipp 1e4 3 0.1 4e10 after none"},

@@ -374,6 +374,12 @@ const Choice choices[] = {
      [](Parts &p) {
        p.fixes += "fix cracks all mpm/fracture surface yes law coulomb 0.3\n";
      }},
+    {"fix mpm/phasefield", "law",
+     [](Parts &p) {
+       p.law =
+           "eos linear 100.0 strength elastic 40.0 damage phasefield 0.1 2.0 model cohesive 0.5";
+       p.fixes += "fix crack all mpm/phasefield every 2\n";
+     }},
     {"fix mpm/heat", "heat",
      [](Parts &p) {
        p.more_law = " thermal conducting 1.0 300 0.5 expansion 1e-4";

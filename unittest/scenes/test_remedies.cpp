@@ -1286,6 +1286,36 @@ const Remedy fractures[] = {
     {"FractureMixture", mixture("", CRACKS), "remove it, and give pieces", {{CRACKS, ""}}},
 };
 
+const std::string BREAKS = "eos linear 100.0 strength elastic 40.0 damage phasefield ",
+                  FIELD = "fix crack all mpm/phasefield\n";
+
+const Remedy phase_fields[] = {
+    {"PhaseFieldMissing",
+     one("", "", BREAKS + "0.1 2.0 model at1"),
+     "define one, or use damage rankine",
+     {{FLOOR, FLOOR + FIELD}}},
+    {"PhaseFieldIdle",
+     one("", FIELD),
+     "give it to what may break",
+     {{ELASTIC, BREAKS + "0.1 2.0 model at1"}}},
+    {"PhaseFieldShort",
+     one("", FIELD, BREAKS + "0.1 0.5 model at1"),
+     "use a length of at least that",
+     {{"0.1 0.5", "0.1 2.0"}}},
+    {"PhaseFieldLong",
+     one("", FIELD, BREAKS + "0.1 2.0 model cohesive 5.0"),
+     "is too large for a cohesive crack",
+     {{"0.1 2.0", "5.0 2.0"}}},
+    {"PhaseFieldVaries",
+     one("", FIELD, BREAKS + "0.1 2.0 model at1 random L lognormal 0.1 4.0 1"),
+     "leave 'random L'",
+     {{" random L lognormal 0.1 4.0 1", ""}}},
+    {"PhaseFieldRefine",
+     refined("", FIELD, " origin 0.25 0.25", "0.5", BREAKS + "0.1 2.0 model at1"),
+     "use one fix mpm",
+     {{FIELD, ""}, {"phasefield 0.1 2.0 model at1", "rankine 5.0"}}},
+};
+
 std::vector<Remedy> all_remedies()
 {
   std::vector<Remedy> all;
@@ -1294,6 +1324,7 @@ std::vector<Remedy> all_remedies()
   };
   append(contacts);
   append(fractures);
+  append(phase_fields);
   append(walls);
   append(heats);
   append(pores);

@@ -14,6 +14,7 @@
 #include "material/batch_kernels.h"
 #include "material/material.h"
 #include "material/material_point.h"
+#include "material/phase_field.h"
 
 #include "atom.h"
 #include "base/mpm_points.h"
@@ -48,6 +49,8 @@ FixMPMMaterial::FixMPMMaterial(LAMMPS *lmp, int narg, char **arg) : FixMPMState(
   restart_global = 1;
   nhistory = material->history().size();
   damage = find_history("damage");
+  crack = find_history("phase");
+  if (crack < 0) crack = damage;
   if (nhistory > 0)
     state.declare(history, "mpm/material:history", nhistory, [this](int i, double *row) {
       try {
@@ -102,6 +105,11 @@ void FixMPMMaterial::init()
                    "Fix mpm/material {} has thermal conducting, but there is no fix mpm/{}heat, "
                    "which conducts: define one, or use thermal adiabatic",
                    id, modify->get_fix_by_style("^mpm/mesh$").empty() ? "" : "mesh/");
+  if (phase_field_cracks(*material) && modify->get_fix_by_style("^mpm/phasefield$").empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/material {} has damage phasefield, but no cracks would grow without fix "
+               "mpm/phasefield: define one, or use damage rankine with soften energy",
+               id);
   counts_stress = !modify->get_compute_by_style("^mpm/energy$").empty();
   if (material->is_of_surfaces()) check_surfaces();
   check_gas(lmp, *this);

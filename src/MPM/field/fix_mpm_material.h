@@ -46,7 +46,8 @@ class FixMPMMaterial : public FixMPMState {
   /** Rate of ln V of liquids that ties volumes to places, see MPMVolumeDrift [n, 1/time]; null for
    *  other materials. */
   double *volume_rate = nullptr;
-  int damage;                  ///< column of the damage, which is 1 in failed points; -1: none
+  int damage;    ///< column of the damage, which is 1 in failed points; -1: none
+  int crack;     ///< column of what is 1 in a crack: the phase field, else the damage; -1: none
   double work[8] = {};         ///< energy of each MPM_NS::Work kind so far, this rank's share
   double stress_work = 0.0;    ///< work of the stress so far, with a compute mpm/energy only
 

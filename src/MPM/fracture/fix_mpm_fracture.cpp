@@ -186,7 +186,7 @@ bool FixMPMFracture::is_marked(int i) const
 double FixMPMFracture::surface_of(const FixMPMMaterial *material, int i) const
 {
   if (is_marked(i)) return 1.0;
-  return material && material->damage >= 0 ? material->history[i][material->damage] : 0.0;
+  return material && material->crack >= 0 ? material->history[i][material->crack] : 0.0;
 }
 
 double FixMPMFracture::quantity(int k, int i) const

@@ -96,7 +96,9 @@ MPM_FAMILY(viscosity, VISCOSITY, ViscosityNewtonian, ViscosityArtificial, Viscos
 
 #if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_damage)
 #include "law/damage.h"
-MPM_FAMILY(damage, DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp)
+#include "law/phase_field.h"
+MPM_FAMILY(damage, DAMAGE, DamageJohnsonCook, DamageCockcroftLatham, DamageRankine, DamageGradyKipp,
+           DamagePhaseField)
 #endif
 
 #if !defined(MPM_ONE_FAMILY) || defined(MPM_LAWS_thermal)

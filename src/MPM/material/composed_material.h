@@ -11,6 +11,7 @@
 
 #include "law/heat_curve.h"
 #include "material/parts.h"
+#include "material/phase_field.h"
 #include "material/softening.h"
 
 #include <cstring>
@@ -108,6 +109,8 @@ class ComposedMaterial : public Material {
   Conduction conduction(const double *history, double low, double high) const;
   void warm(double *history, double heat) const override;
   std::optional<SofteningRange> softening() const;    ///< see softening_range()
+  /** See phase_field_cracks() of phase_field.h. */
+  std::optional<PhaseFieldCracks> phase_field_cracks() const;
   /** See heat_since_start(). */
   double heat_of(const double *history) const;
   void initialized() const override;
@@ -284,6 +287,7 @@ class ComposedMaterial : public Material {
   /** The same of a point with the initial values of its history variables, at its first
    *  temperature. */
   double consistent_gruneisen(std::vector<double> initial) const;
+  double youngs_modulus() const;
   /** Bulk modulus without stress, from two small compressions. */
   double bulk_modulus(std::vector<double> initial) const;
   double thermal_value(const char *name) const;

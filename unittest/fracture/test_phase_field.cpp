@@ -1,0 +1,341 @@
+// This file is part of the MPM package for LAMMPS, distributed under the GNU General Public
+// License, version 2; see the file LICENSE.
+
+// labels: physics mpi restart ranks input
+// mpi: 1 3
+// timeout: 900
+
+// Cracks by a phase field: their energy, their strength, and what must not break.
+
+#include "law/phase_field.h"
+
+#include "mpm_lammps.h"
+
+using namespace MPM_TEST;
+using MPM_NS::law::Degradation;
+using MPM_NS::law::PhaseField;
+
+// Strain of a homogeneous bar over that at its strength, with E = GC = 1, l = .05, and strengths of
+// 1 and 2: reference values of the equation of equilibrium, -g' w_p = GC/(c0 l) w'
+SERIAL_TEST(HomogeneousBar, StrainIsThatOfACohesiveCrack)
+{
+  struct Row {
+    double strength, d, strain;
+  };
+  for (const Row &row : {Row{1, .1, 3.22916}, Row{1, .5, 9.79930}, Row{1, .9, 12.61507},
+                         Row{2, .1, 1.41479}, Row{2, .5, 2.63732}, Row{2, .9, 3.16127}}) {
+    const PhaseField f = PhaseField::cohesive();
+    const double k = f.toughness(1.0, 0.05, 0.0), s = row.strength;
+    const double a = 2.0 * f.xi * k / (s * s);
+    const Degradation g(row.d, a);
+    const double energy = -k * f.slope(row.d) / g.slope;    // E strain^2/2
+    EXPECT_NEAR(std::sqrt(2.0 * energy) / s, row.strain, 1.0e-5);
+    // and the stress is (1 - d)^2 of the strength
+    EXPECT_NEAR(g.value * std::sqrt(2.0 * energy) / s, std::pow(1.0 - row.d, 2), 1.0e-12);
+  }
+}
+
+// Its largest stress: (9/16) sqrt(E GC/(3 l)) with AT2, sqrt(3 E GC/(8 l)) with AT1
+SERIAL_TEST(HomogeneousBar, StrengthFollowsFromTheLength)
+{
+  const PhaseField at1 = PhaseField::at1(), at2 = PhaseField::at2();
+  const auto stress = [](const PhaseField &f, double d) {
+    const Degradation g(d, PhaseField::SQUARE);
+    return g.value * std::sqrt(-2.0 * f.toughness(1.0, 0.05, 0.0) * f.slope(d) / g.slope);
+  };
+  EXPECT_NEAR(stress(at1, 0.0), 2.7386128, 1.0e-7);
+  EXPECT_NEAR(stress(at2, 0.25), 1.4523688, 1.0e-7);
+  EXPECT_GT(stress(at2, 0.25), std::max(stress(at2, 0.24), stress(at2, 0.26)));
+}
+
+/** PulledStrip of E = 10 GPa and GC = 50 J/m2, LENGTH by WIDTH mm and turned by ANGLE degrees, that heavy
+ *  grips pull apart; a band of 2 mm in its middle has .95 of its strength of 5 MPa. */
+static const std::string pulled_strip = R"lmp(
+units si
+dimension 2
+boundary f FACES p
+atom_style mpm
+variable h equal 1.0e-3*SPACING
+neighbor $(0.5*v_h) bin
+variable B equal 18.0e-3
+region box block -${B} ${B} -SIDE SIDE $(-0.5*v_h) $(0.5*v_h)
+create_box 3 box
+variable c equal cos(ANGLE*PI/180)
+variable s equal sin(ANGLE*PI/180)
+variable a equal 0.5e-3*LENGTH
+variable e equal v_a+4.0e-3
+variable w equal 0.5e-3*WIDTH
+region plo plane $(-v_e*v_c) $(-v_e*v_s) 0 ${c} ${s} 0
+region phi plane $(v_e*v_c) $(v_e*v_s) 0 $(-v_c) $(-v_s) 0
+region slo plane $(v_w*v_s) $(-v_w*v_c) 0 $(-v_s) ${c} 0
+region shi plane $(-v_w*v_s) $(v_w*v_c) 0 ${s} $(-v_c) 0
+region strip intersect 4 plo phi slo shi
+fix grid all mpm ${h} OPTIONS apart ignore gain ignore
+create_points 1 region strip ppc 2
+variable along atom x*v_c+y*v_s
+variable isgrip atom "abs(v_along)>v_a"
+variable isweak atom "abs(v_along)<1.0e-3"
+variable ismid atom "abs(v_along)<0.5*v_a && abs(v_along)>1.0e-3"
+group grips variable isgrip
+group weak variable isweak
+group mid variable ismid
+group bulk subtract all grips weak
+fix grips grips mpm/material density 2.0e9 eos linear 5.5555556e9 strength elastic 4.1666667e9
+fix bulk bulk mpm/material density 2000 eos linear 5.5555556e9 strength elastic 4.1666667e9 damage phasefield 50 LLL model cohesive 5.0e6
+fix weak weak mpm/material density 2000 eos linear 5.5555556e9 strength elastic 4.1666667e9 damage phasefield 50 LLL model cohesive 4.75e6
+fix cracks all mpm/phasefield FIX
+variable u atom "SPEED*(v_along/v_a*(abs(v_along)<v_a)+(v_along>=v_a)-(v_along<=-v_a))"
+variable ux atom v_u*v_c
+variable uy atom v_u*v_s
+velocity all set v_ux v_uy 0.0
+fix step all mpm/dt 0.4
+compute e all mpm/energy
+variable energy equal c_e[12]/(50.0*1.0e-3*WIDTH)
+compute d all mpm/atom phase stress/xx stress/yy stress/xy
+variable normal atom "c_d[2]*v_c*v_c+c_d[3]*v_s*v_s+2*c_d[4]*v_c*v_s"
+compute stress mid reduce ave v_normal
+compute most all reduce max c_d[1]
+compute total all reduce sum c_d[1]
+thermo_style custom step time v_energy c_stress c_most c_total f_cracks f_cracks[1] f_cracks[2]
+variable t equal time
+)lmp";
+
+struct PulledStrip {
+  double spacing = 1.0, l = 2.0, angle = 0.0, length = 16.0, width = 6.0, speed = 0.05;
+  std::string options, fix, faces = "f", side = "${B}", model = "model cohesive 5.0e6",
+                            weak = "model cohesive 4.75e6";
+
+  std::string scene() const
+  {
+    return replaced(replaced(replaced(pulled_strip, "model cohesive 5.0e6", model),
+                             "model cohesive 4.75e6", weak),
+                    {{"SPACING", strprintf("%g", spacing)},
+                     {"LLL", strprintf("%g", 1.0e-3 * l)},
+                     {"ANGLE", strprintf("%g", angle)},
+                     {"LENGTH", strprintf("%g", length)},
+                     {"WIDTH", strprintf("%g", width)},
+                     {"SPEED", strprintf("%g", speed)},
+                     {"SIDE", side},
+                     {"FACES", faces},
+                     {"OPTIONS", options},
+                     {"FIX", fix}});
+  }
+  /** The same as a bar: two cells wide, with periodic faces. */
+  PulledStrip bar() const
+  {
+    PulledStrip one = *this;
+    one.faces = "p";
+    one.width = 2.0 * spacing;
+    one.side = strprintf("%g", 1.0e-3 * spacing);
+    return one;
+  }
+};
+
+/** Pulls until an opening of 30 um, 1.5 times that at which a cohesive crack is free of stress.
+ *  Returns the largest stress. */
+static double pull_apart(Scene &run, double speed, double opening = 30.0e-6)
+{
+  double largest = 0.0;
+  run.commands("variable more equal v_t<" + strprintf("%g", 0.5 * opening / speed) + "\n");
+  while (run.variable("more") > 0.0) {
+    run.commands("run 50 post no\n");
+    largest = std::max(largest, run.compute_scalar("stress"));
+  }
+  return largest;
+}
+
+// A bar breaks at its strength, and with the energy GC, whatever the length of the phase field and
+// the spacing of the nodes. In plane strain the weak band has a largest stress of 4.75 MPa
+SERIAL_PARAMETER_TEST(Bar, BreaksAtItsStrengthWithTheEnergyGC, std::vector<double>,
+                      Values(std::vector<double>{1.0, 1.0}, std::vector<double>{1.0, 2.0},
+                             std::vector<double>{0.5, 1.0}, std::vector<double>{0.5, 2.0}))
+{
+  LONG_AFTER(2);
+  PulledStrip bar;
+  bar.spacing = GetParam()[0];
+  bar.l = GetParam()[1];
+  bar.speed = 0.1;
+  Scene run(bar.bar().scene());
+  const double stress = pull_apart(run, bar.speed);
+  EXPECT_NEAR(measured("largest stress", stress / 4.75e6), 1.0, 0.04);
+  EXPECT_NEAR(measured("energy", run.variable("energy")), 1.0, 0.05);
+  EXPECT_GT(run.compute_scalar("most"), 0.95);
+  EXPECT_LT(measured("stress left", run.compute_scalar("stress") / 4.75e6), 0.07);
+}
+
+// The energy of a crack hardly depends on its direction; a band of cells that soften spends 1.6 to
+// 2.5 times GC
+SERIAL_PARAMETER_TEST(TurnedStrip, BreaksWithTheEnergyGC, double, Values(0.0, 22.5, 45.0))
+{
+  PulledStrip strip;
+  strip.angle = GetParam();
+  strip.speed = 0.1;
+  Scene run(strip.scene());
+  pull_apart(run, strip.speed);
+  EXPECT_NEAR(measured("energy", run.variable("energy")), 1.0, 0.1);
+  const double *const e = run.compute_vector();
+  EXPECT_NEAR(e[10] / e[11], 0.0, 1.0e-9);    // residual
+  EXPECT_NEAR(measured("integration", e[9] / e[11]), 0.0, 0.05);
+}
+
+// AT1 has a strength that follows from its length, here 6.99 MPa with 4 mm, and the same energy. The
+// bar breaks next to a grip, where the stress is larger by some percent
+SERIAL_TEST(Bar, WithAT1BreaksAtTheStrengthOfItsLength)
+{
+  PulledStrip bar;
+  bar.l = 4.0;
+  bar.length = 16.0;
+  bar.model = bar.weak = "model at1";
+  bar.speed = 0.1;
+  Scene run(bar.bar().scene());
+  const double E = 1.0e10 / (1.0 - 0.04);    // plane strain
+  const double strength = std::sqrt(3.0 * E * 50.0 / (8.0 * 4.0e-3));
+  EXPECT_NEAR(measured("largest stress", pull_apart(run, bar.speed) / strength), 1.0, 0.06);
+  EXPECT_NEAR(measured("energy", run.variable("energy")), 1.0, 0.1);
+}
+
+// The middle of the bar may be where two periodic faces meet
+SERIAL_TEST(Bar, BreaksAtPeriodicFaces)
+{
+  PulledStrip bar;
+  bar.speed = 0.1;
+  const std::string scene = bar.bar().scene();
+  std::string moved = replaced(scene,
+                               {{"boundary f p p", "boundary p p p"},
+                                {"variable t equal time\n", "variable t equal time\n"}});
+  moved = replaced(moved, "fix step all", "displace_atoms all move 18.0e-3 0 0\nfix step all");
+  Scene whole(scene), across(moved);
+  pull_apart(whole, bar.speed);
+  pull_apart(across, bar.speed);
+  EXPECT_NEAR(across.variable("energy"), whole.variable("energy"), 1.0e-6);
+}
+
+// Below the strength nothing happens, not even to the last bit
+SERIAL_TEST(BelowItsStrength, ABodyIsAsWithoutDamage)
+{
+  PulledStrip strip;
+  strip.angle = 22.5;
+  strip.speed = 0.1;
+  const std::string with = strip.scene();
+  Scene run(with);
+  run.commands("run 150\n");
+  EXPECT_GT(run.compute_scalar("stress"), 1.0e6);
+  EXPECT_EQ(run.compute_scalar("total"), 0.0);
+  EXPECT_EQ(run.variable("energy"), 0.0);
+}
+
+// What is compressed does not break, at five times the stress at which it breaks in tension
+SERIAL_TEST(Compression, BreaksNothing)
+{
+  PulledStrip bar;
+  bar.speed = -0.2;
+  Scene run(bar.bar().scene());
+  run.commands("run 1100\n");
+  EXPECT_LT(measured("stress", run.compute_scalar("stress") / 4.75e6), -5.0);
+  EXPECT_EQ(run.compute_scalar("total"), 0.0);
+}
+
+// A crack that is closed again stays as it is
+SERIAL_TEST(ClosedCrack, DoesNotHeal)
+{
+  PulledStrip bar;
+  bar.speed = 0.1;
+  Scene run(bar.bar().scene());
+  run.commands("run 500\n");
+  const double total = run.compute_scalar("total"), most = run.compute_scalar("most");
+  EXPECT_GT(most, 0.2);
+  EXPECT_LT(most, 0.9);
+  run.commands("variable ux atom -v_u\nvelocity all set v_ux 0 0\n");
+  double least = total;
+  for (int n = 0; n < 10; n++) {
+    run.commands("run 50 post no\n");
+    least = std::min(least, run.compute_scalar("total"));
+  }
+  EXPECT_GE(least, total);
+  EXPECT_LT(run.compute_scalar("stress"), 0.0);
+}
+
+// With split nodes both sides of the crack are free, and fly apart
+SERIAL_TEST(SplitStrip, HasNoStressLeft)
+{
+  double stress[2], energy[2];
+  for (const int k : {0, 1}) {
+    PulledStrip strip;
+    strip.angle = 22.5;
+    strip.speed = 0.1;
+    Scene run(strip.scene() + (k ? "" : "fix sides all mpm/fracture separable 0.95\n"));
+    pull_apart(run, strip.speed, 40.0e-6);
+    stress[k] =
+        measured(k ? "stress, whole" : "stress, split", run.compute_scalar("stress") / 4.75e6);
+    energy[k] = measured(k ? "energy, whole" : "energy, split", run.variable("energy"));
+  }
+  EXPECT_LT(std::fabs(stress[0]), 0.02);
+  EXPECT_NEAR(energy[0], energy[1], 0.1);
+}
+
+TEST(PhaseField, RanksAgreeAlsoAfterARestart)
+{
+  PulledStrip strip;
+  strip.angle = 22.5;
+  strip.speed = 0.2;
+  strip.fix = "every 3";
+  const std::string scene = strip.scene();
+  Twins run(scene, 350, lines_again(scene), 100, 1e-9);
+  EXPECT_GT(run.whole.evaluate("c_most"), 0.1);
+  Scene balanced(scene + "fix bal all balance 40 1.05 shift xy 10 1.1\nrun 350\nrun 100\n");
+  EXPECT_LT(difference(run.serial.gather(), balanced.gather()), 1e-9);
+}
+
+SERIAL_TEST(PhaseFieldInput, IsToldOf)
+{
+  PulledStrip strip;
+  EXPECT_EQ(times_said(strip.scene() + "run 0\n", "below two node spacings"), 0);
+  strip.l = 1.5;
+  EXPECT_EQ(times_said(strip.scene() + "run 0\n", "below two node spacings"), 2);
+  EXPECT_EQ(times_said(plane("si", "f f", "0 4 0 4") +
+                           "region all block INF INF INF INF INF INF\nfix grid all mpm 1.0\n"
+                           "create_points 1 region box ppc 2\nfix m all mpm/material density 1.0 "
+                           "neohookean 1.0 0.2\nfix c all mpm/phasefield\nrun 0\n",
+                       "has nothing to do"),
+            1);
+}
+
+TEST(PhaseFieldInput, IsRefused)
+{
+  const std::string scene = plane("si", "f f", "0 8 0 8") + R"(
+fix grid all mpm 1.0
+create_points 1 region box ppc 2
+)";
+  const std::string law =
+      "fix m all mpm/material density 1.0 eos linear 1.0 strength elastic 1.0 damage phasefield ";
+  const std::string fix = "\nfix cracks all mpm/phasefield";
+  expect_refused(
+      scene,
+      {
+          {law + "1.0 2.0" + fix, "it needs a model"},
+          {law + "0.0 2.0 model at1" + fix, "GC = 0.0"},
+          {law + "nan 2.0 model at1" + fix, "GC"},
+          {law + "1.0 -2.0 model at1" + fix, "L = -2.0"},
+          {law + "1.0 2.0 model cohesive 0.0" + fix, "SIGMA = 0.0"},
+          {law + "1.0 2.0 model cohesive" + fix, "model cohesive"},
+          {law + "1.0 2.0 model at3" + fix, "model"},
+          {law + "1.0 2.0 model at1 model at2" + fix, "model"},
+          {law + "1.0 0.9 model at1" + fix, "is below the node spacing 1 of fix mpm grid"},
+          {law + "1.0 2.0 model cohesive 2.0" + fix, "is too large for a cohesive crack"},
+          {law + "1.0 2.0 model at1 random L lognormal 0.1 4.0 1" + fix,
+           "must be the same everywhere"},
+          {law + "1.0 2.0 model at1", "no cracks would grow without fix mpm/phasefield"},
+          {law + "1.0 2.0 model at1\ngroup some id 1\nfix cracks some mpm/phasefield",
+           "use group all"},
+          {law + "1.0 2.0 model at1" + fix + " every 0", "every"},
+          {law + "1.0 2.0 model at1" + fix + " every 2.5", "every"},
+          {law + "1.0 2.0 model at1" + fix + " tolerance 0", "must be above 0"},
+          {law + "1.0 2.0 model at1" + fix + " tolerance nan", "tolerance"},
+          {law + "1.0 2.0 model at1" + fix + " iterations 0", "iterations"},
+          {law + "1.0 2.0 model at1" + fix + " solver cg",
+           "Unknown fix mpm/phasefield keyword: solver"},
+          {law + "1.0 2.0 model at1" + fix + "\nfix more all mpm/phasefield",
+           "one acts on all bodies"},
+      },
+      "run 1\n");
+}
