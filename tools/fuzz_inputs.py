@@ -59,6 +59,7 @@ BETWEEN = [
     "fix fuzza all adapt 1 atom mass v_fuzzatoms", "fix fuzzp all print 1 \"$(step)\"", "fix fuzzt all store/state 1 x",
     "fix fuzzh all halt 1 v_fuzz > 0", "fix fuzzv all ave/atom 1 1 1 vx", "fix fuzzw all wall/reflect xlo EDGE",
     "compute fuzzc all mpm/energy", "compute fuzzc all mpm/atom stress pressure", "compute fuzzc all mpm/error v_fuzz",
+    "compute fuzzc all mpm/fragment", "compute fuzzc all mpm/fragment separable 0.5",
     "rerun fuzz.dump dump x y z", "read_dump fuzz.dump 0 x y z", 
     "pair_style none", "pair_style zero 1.0\npair_coeff * *", "suffix omp", "package omp 1", 
     "fix_modify %(fix)s energy yes virial yes", "fix_modify %(fix)s respa 1", "compute_modify %(compute)s dynamic yes",

@@ -65,6 +65,9 @@ class FixMPMFracture :
   void stretch_gradients(MPMField &, int first, int n, double dt, double *L) override;
   std::vector<std::string> quantities() const override { return {"surface", "opening"}; }
   double quantity(int k, int i) const override;
+  /** Sets the unit vector out of the body of a point that is on a surface since the start; of other
+   *  points 0. */
+  void find_normal(const MPMField &, int i, double *n) const;
 
  private:
   // of points on surfaces at the start, as F was the unit matrix: unit vectors out of the body, 0
@@ -86,7 +89,6 @@ class FixMPMFracture :
 
   bool is_marked(int i) const;
   double surface_of(const class FixMPMMaterial *, int i) const;
-  void find_normal(const MPMField &, int i, double *n) const;
   void mark_surfaces(MPMField &);
   void split(Body &);
   void touch(Body &);
