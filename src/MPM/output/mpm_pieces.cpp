@@ -420,9 +420,9 @@ bool MPMPieces::are_joined(const Point &a, const Point &b) const
   if (!(r2 < near * near) && !extends_to(a, d) && !extends_to(b, d)) return false;
   const double r = std::sqrt(r2), back[3] = {-d[0], -d[1], -d[2]};
   if (fracture && (is_behind(a, d, r) || is_behind(b, back, r))) return false;
-  const Point &mine = a.field ? a : b;    // this rank knows all that is close to it
-  return near_damage.empty() || !near_damage[mine.cell] ||
-      !has_damage_between(mine, a.field ? b : a, r2);
+  const bool is_mine = a.field;    // this rank knows all that is close to its own points
+  if (near_damage.empty() || !near_damage[is_mine ? a.cell : b.cell]) return true;
+  return !(is_mine ? has_damage_between(a, b, d, r) : has_damage_between(b, a, back, r));
 }
 
 void MPMPieces::deformation_of(const Point &p, double F[3][3]) const
@@ -468,19 +468,32 @@ bool MPMPieces::is_behind(const Point &p, const double *d, double r) const
   return MathExtra::dot3(normal, d) > OUTWARD * r;
 }
 
-/** Is a damaged point closer to both than they are to each other? */
-bool MPMPieces::has_damage_between(const Point &a, const Point &b, double r2) const
+/** Is a damaged point closer to both than they are to each other? d: from a to b, of length r. */
+bool MPMPieces::has_damage_between(const Point &a, const Point &b, const double *d, double r) const
 {
-  const double less = r2 * (1.0 - ROUNDING);
-  bool found = false;
-  each_cell_near(a.cell, r2 > grid.lattice.h * grid.lattice.h ? MOST : 1, [&](int cell) {
-    for (int s = first[2 * cell + 1]; s < first[2 * cell + 2] && !found; s++) {
-      double d[3];
-      const Point &p = points[order[s]];
-      found = distance2(a, p, d) < less && distance2(b, p, d) < less;
-    }
-  });
-  return found;
+  const double less = r * r * (1.0 - ROUNDING);
+  int index[3], from[3], to[3], at[3];
+  grid.node_index(a.cell, index);
+  const auto &block = grid.blocks[a.cell / NODES_PER_BLOCK];
+  for (int k = 0; k < 3; k++) {    // cells within this distance of both
+    const double t = (a.x[k] - grid.lattice.origin[k]) * per_spacing, cell = std::floor(t);
+    from[k] = index[k] + (int) (std::floor(t + (std::max(0.0, d[k]) - r) * per_spacing) - cell);
+    to[k] = index[k] + (int) (std::floor(t + (std::min(0.0, d[k]) + r) * per_spacing) - cell);
+  }
+  if (dim == 2) from[2] = to[2] = 0;
+  for (at[0] = from[0]; at[0] <= to[0]; at[0]++)
+    for (at[1] = from[1]; at[1] <= to[1]; at[1]++)
+      for (at[2] = from[2]; at[2] <= to[2]; at[2]++) {
+        int64_t cell = grid.locate_near(block, at);
+        if (cell < 0) continue;
+        if (!canonical.empty()) cell = canonical[cell];
+        for (int s = first[2 * cell + 1]; s < first[2 * cell + 2]; s++) {
+          double way[3];
+          const Point &p = points[order[s]];
+          if (distance2(a, p, way) < less && distance2(b, p, way) < less) return true;
+        }
+      }
+  return false;
 }
 
 /** The smallest ID in each set, over all ranks: what a rank knows goes to its neighbors until

@@ -94,7 +94,7 @@ class MPMPieces : protected Pointers {
   bool are_joined(const Point &, const Point &) const;
   bool extends_to(const Point &, const double *d) const;
   bool is_behind(const Point &, const double *d, double r) const;
-  bool has_damage_between(const Point &, const Point &, double r2) const;
+  bool has_damage_between(const Point &, const Point &, const double *d, double r) const;
   double distance2(const Point &, const Point &, double *d) const;
   void deformation_of(const Point &, double F[3][3]) const;
   const Other &other(const Point &) const;
