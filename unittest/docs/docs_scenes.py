@@ -191,6 +191,8 @@ def scene_for(lines):
             before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
                        (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
+    if "damage phasefield" in text and "mpm/phasefield" not in text:
+        before += "fix cracks all mpm/phasefield\n"
     on_one_mesh = "mpm/mesh/contact" in text
     if on_one_mesh:
         grid = "fix grid all mpm/mesh wide.msh\n"

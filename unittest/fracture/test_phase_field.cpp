@@ -48,8 +48,8 @@ SERIAL_TEST(HomogeneousBar, StrengthFollowsFromTheLength)
   EXPECT_GT(stress(at2, 0.25), std::max(stress(at2, 0.24), stress(at2, 0.26)));
 }
 
-/** PulledStrip of E = 10 GPa and GC = 50 J/m2, LENGTH by WIDTH mm and turned by ANGLE degrees, that heavy
- *  grips pull apart; a band of 2 mm in its middle has .95 of its strength of 5 MPa. */
+/** A strip of E = 10 GPa and GC = 50 J/m2, LENGTH by WIDTH mm and turned by ANGLE degrees, that
+ *  heavy grips pull apart; a band of 2 mm in its middle has .95 of its strength of 5 MPa. */
 static const std::string pulled_strip = R"lmp(
 units si
 dimension 2
@@ -80,9 +80,10 @@ group grips variable isgrip
 group weak variable isweak
 group mid variable ismid
 group bulk subtract all grips weak
-fix grips grips mpm/material density 2.0e9 eos linear 5.5555556e9 strength elastic 4.1666667e9
-fix bulk bulk mpm/material density 2000 eos linear 5.5555556e9 strength elastic 4.1666667e9 damage phasefield 50 LLL model cohesive 5.0e6
-fix weak weak mpm/material density 2000 eos linear 5.5555556e9 strength elastic 4.1666667e9 damage phasefield 50 LLL model cohesive 4.75e6
+variable elastic string "eos linear 5.5555556e9 strength elastic 4.1666667e9"
+fix grips grips mpm/material density 2.0e9 ${elastic}
+fix bulk bulk mpm/material density 2000 ${elastic} damage phasefield 50 LLL model cohesive 5.0e6
+fix weak weak mpm/material density 2000 ${elastic} damage phasefield 50 LLL model cohesive 4.75e6
 fix cracks all mpm/phasefield FIX
 variable u atom "SPEED*(v_along/v_a*(abs(v_along)<v_a)+(v_along>=v_a)-(v_along<=-v_a))"
 variable ux atom v_u*v_c
@@ -178,8 +179,8 @@ SERIAL_PARAMETER_TEST(TurnedStrip, BreaksWithTheEnergyGC, double, Values(0.0, 22
   EXPECT_NEAR(measured("integration", e[9] / e[11]), 0.0, 0.05);
 }
 
-// AT1 has a strength that follows from its length, here 6.99 MPa with 4 mm, and the same energy. The
-// bar breaks next to a grip, where the stress is larger by some percent
+// AT1 has a strength that follows from its length, here 6.99 MPa with 4 mm, and the same energy.
+// The bar breaks next to a grip, where the stress is larger by some percent
 SERIAL_TEST(Bar, WithAT1BreaksAtTheStrengthOfItsLength)
 {
   PulledStrip bar;
