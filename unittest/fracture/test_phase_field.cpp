@@ -204,6 +204,19 @@ SERIAL_PARAMETER_TEST(TurnedStrip, BreaksWithTheEnergyGC, double, Values(0.0, 22
   EXPECT_NEAR(measured("integration", e[9] / e[11]), 0.0, 0.05);
 }
 
+SERIAL_TEST(Bar, BreaksInSpaceAsInThePlane)
+{
+  PulledStrip bar;
+  bar.speed = 0.1;
+  const std::string plane = bar.bar().scene();
+  Scene flat(plane),
+      solid(replaced(
+          plane, {{"dimension 2", "dimension 3"}, {"$(-0.5*v_h) $(0.5*v_h)", "$(-v_h) $(v_h)"}}));
+  const double stress = pull_apart(flat, bar.speed), same = pull_apart(solid, bar.speed);
+  EXPECT_NEAR(same / stress, 1.0, 0.01);
+  EXPECT_NEAR(solid.variable("energy") / (2.0e-3 * flat.variable("energy")), 1.0, 0.01);
+}
+
 // AT1 has a strength that follows from its length, here 6.99 MPa with 4 mm, and the same energy.
 // The bar breaks next to a grip, where the stress is larger by some percent
 SERIAL_TEST(Bar, WithAT1BreaksAtTheStrengthOfItsLength)
@@ -220,8 +233,8 @@ SERIAL_TEST(Bar, WithAT1BreaksAtTheStrengthOfItsLength)
   EXPECT_NEAR(measured("energy", run.variable("energy")), 1.0, 0.1);
 }
 
-// Periodic faces may be where the bar breaks, or within reach of its crack: in the middle of a block
-// of nodes of the lattice, which is the last one before the face
+// Periodic faces may be where the bar breaks, or within reach of its crack: in the middle of a
+// block of nodes, which is the last one before the face
 SERIAL_PARAMETER_TEST(BarAtPeriodicFaces, BreaksAsElsewhere, double, Values(16.0, -12.0))
 {
   PulledStrip bar;
