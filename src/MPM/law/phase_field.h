@@ -57,11 +57,14 @@ namespace {
     }
   };
 
-  /** Cracks by a phase field d, which fix mpm/phasefield finds. Its energy w per volume is that
-   *  which damage may release (see ScalarDamage), and 0 where no principal stress is tension.
-   *  For cohesive cracks, w_1 is its value when the largest principal stress reaches the strength,
-   *  and a = xi GC/(c0 l w_1): so d begins to grow at the strength in any state of stress, and the
-   *  energy is GC. Both follow with the stress until then. */
+  /** Cracks by a phase field d, which fix mpm/phasefield finds. What drives it is the energy w per
+   *  volume that damage may release (see ScalarDamage), as far as tension does.
+   *
+   *  For cohesive cracks, w_1 is w when the largest principal stress reaches the strength, and a =
+   *  xi GC/(c0 l w_1): so d begins to grow at the strength in any state of stress, and the energy is
+   *  GC. Both follow with the stress until then. The driving energy is w, but not more than w_1
+   *  (sigma_1/strength)^2: what is stored in compression breaks nothing. With AT1 and AT2, it is w
+   *  times the share of tension in the stress. */
   struct DamagePhaseField : ScalarDamage<DamagePhaseField> {
     static constexpr const char *name = "phasefield";
     static constexpr const char *meaning = "cracks by a phase field, with fix mpm/phasefield";
@@ -109,18 +112,36 @@ namespace {
       twice = PhaseField::cohesive().xi * toughness;
     }
 
+    /** Sum of the squares of principal stresses that are tension, over that of all. */
+    static MPM_INLINE double share_of_tension(const Intact &intact)
+    {
+      const double first = largest_eigenvalue(intact.s);
+      const double last = -largest_eigenvalue(-1.0 * intact.s);
+      const double stress[3] = {intact.mean + first, intact.mean - first - last,
+                                intact.mean + last};
+      double tension = 0.0, all = 1e-300;
+      for (const double one : stress) {
+        tension += max(one, 0.0) * max(one, 0.0);
+        all += one * one;
+      }
+      return tension / all;
+    }
+
     MPM_INLINE double grow(const Batch &b, History history, int i, const Intact &intact) const
     {
       const double tension = max(b.volume_energy[i] - history[REST_ENERGY][i], 0.0);
       const double w = b.shear_energy[i] + (intact.mean > 0.0 ? tension : 0.0);
-      const double largest = principal(intact), d = history[PHASE][i];
-      history[DRIVING][i] = largest > 0.0 ? max(w, 0.0) : 0.0;
+      const double largest = max(principal(intact), 0.0), d = history[PHASE][i];
       history[TOUGHNESS][i] = toughness;
-      if (!cohesive) return 1.0 - Degradation(d, PhaseField::SQUARE).value;
-      const double r = max(largest, 0.0) * inv_strength;
-      const double now = max(twice * r * r / max(w, 1e-300), PhaseField::LEAST);
+      if (!cohesive) {
+        history[DRIVING][i] = w * share_of_tension(intact);
+        return 1.0 - Degradation(d, PhaseField::SQUARE).value;
+      }
+      const double r2 = largest * inv_strength * largest * inv_strength;
+      const double now = max(twice * r2 / max(w, 1e-300), PhaseField::LEAST);
       const double a = d > 0.0 ? history[SHAPE][i] : now;
       history[SHAPE][i] = a;
+      history[DRIVING][i] = min(w, twice * r2 / a);
       return 1.0 - Degradation(d, a).value;
     }
   };
