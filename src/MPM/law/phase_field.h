@@ -60,11 +60,11 @@ namespace {
   /** Cracks by a phase field d, which fix mpm/phasefield finds. What drives it is the energy w per
    *  volume that damage may release (see ScalarDamage), as far as tension does.
    *
-   *  For cohesive cracks, w_1 is w when the largest principal stress reaches the strength, and a =
-   *  xi GC/(c0 l w_1): so d begins to grow at the strength in any state of stress, and the energy is
-   *  GC. Both follow with the stress until then. The driving energy is w, but not more than w_1
-   *  (sigma_1/strength)^2: what is stored in compression breaks nothing. With AT1 and AT2, it is w
-   *  times the share of tension in the stress. */
+   *  For cohesive cracks, w_1 is w when the largest principal stress reaches the strength, and
+   *  a = xi GC/(c0 l w_1): so d begins to grow at the strength in any state of stress, and the
+   *  energy is GC. Both follow with the stress until then. The driving energy is w, but not more
+   *  than w_1 (sigma_1/strength)^2: what is stored in compression breaks nothing. With AT1 and AT2,
+   *  it is w times the share of tension in the stress. */
   struct DamagePhaseField : ScalarDamage<DamagePhaseField> {
     static constexpr const char *name = "phasefield";
     static constexpr const char *meaning = "cracks by a phase field, with fix mpm/phasefield";
