@@ -47,7 +47,6 @@ class FixMPMPhaseField : public Fix, public MPMPhysics, private MPMPhaseFieldOpt
   void init_physics(MPMPlan &) override;
   void add_stages(MPMPlan &, MPMPlan::Place) override;
   bool looks_beyond_points() const override { return false; }
-  bool precedes_motion() const override { return true; }
 
  private:
   std::vector<std::unique_ptr<MPMPhaseField>> fields;
