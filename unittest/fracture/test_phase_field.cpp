@@ -50,7 +50,8 @@ SERIAL_TEST(HomogeneousBar, StrengthFollowsFromTheLength)
   EXPECT_GT(stress(at2, 0.25), std::max(stress(at2, 0.24), stress(at2, 0.26)));
 }
 
-// The law of a cohesive crack is that of the stress at which it has begun, whatever comes after
+// The law of a cohesive crack is that of the stress at which it has begun, whatever comes after. A
+// crack that comes to a point while this is compressed gets its law in the first tension
 SERIAL_TEST(CohesiveCrack, KeepsItsLaw)
 {
   const auto material =
@@ -58,18 +59,28 @@ SERIAL_TEST(CohesiveCrack, KeepsItsLaw)
                                 "damage", "phasefield", "1", "0.1", "model", "cohesive", "1"});
   const auto cracks = MPM_NS::phase_field_cracks(*material);
   ASSERT_TRUE(cracks);
-  MPM_NS::MaterialPoint p(*material, 1, 0.1);
-  const auto stretch = [&](double x, double y) {
+  const auto stretch = [&](MPM_NS::MaterialPoint &p, double x, double y) {
     const double A[9] = {x, 0, 0, 0, y, 0, 0, 0, 0};
     p.move(A, 1.0);
     return p.history(cracks->shape);
   };
-  const double in_tension = stretch(0.005, 0.0);
-  EXPECT_NE(stretch(0.0, 0.005), in_tension);
-  const double now = stretch(0.0, 0.001);
+  MPM_NS::MaterialPoint p(*material, 1, 0.1), compressed(*material, 1, 0.1);
+  const double in_tension = stretch(p, 0.005, 0.0);
+  // uniaxial strain: a = 4 M GC/(pi l sigma^2), M = K + 4 G/3, and GC over 1 + h/(pi l)
+  const double M = 50.0 + 4.0 * 40.0 / 3.0, GC = 1.0 / (1.0 + 1.0 / M_PI);
+  EXPECT_NEAR(in_tension, 4.0 * M * GC / (M_PI * 0.1), 0.01 * in_tension);
+  EXPECT_LT(stretch(p, 0.0, -0.004), 0.9 * in_tension);    // before the crack it follows
+  EXPECT_NEAR(stretch(p, 0.0, 0.004), in_tension, 0.01 * in_tension);
   p.batch.history[cracks->phase][0] = 0.3;
-  EXPECT_EQ(stretch(0.0, -0.006), now);
-  EXPECT_EQ(stretch(0.01, 0.01), now);
+  const double now = p.history(cracks->shape);
+  EXPECT_EQ(stretch(p, 0.0, -0.004), now);
+  EXPECT_EQ(stretch(p, -0.02, -0.02), now);
+
+  stretch(compressed, -0.01, 0.0);
+  compressed.batch.history[cracks->phase][0] = 0.3;
+  EXPECT_EQ(stretch(compressed, -0.001, 0.0), PhaseField::LEAST);
+  for (int step = 0; step < 16; step++) stretch(compressed, 0.001, 0.0);
+  EXPECT_NEAR(compressed.history(cracks->shape), in_tension, 0.05 * in_tension);
 }
 
 /** A strip of E = 10 GPa and GC = 50 J/m2, LENGTH by WIDTH mm and turned by ANGLE degrees, that
@@ -344,6 +355,24 @@ SERIAL_TEST(PhaseFieldInput, IsToldOf)
   EXPECT_EQ(times_said(strip.scene() + "run 0\n", "below two node spacings"), 0);
   strip.l = 1.5;
   EXPECT_EQ(times_said(strip.scene() + "run 0\n", "below two node spacings"), 2);
+  // what cannot break may be on a coarser lattice
+  EXPECT_EQ(times_said(plane("si", "f f", "0 30 0 20", 2) + R"(
+group a empty
+group b empty
+fix A a mpm 1.0
+fix B b mpm 4.0
+region a block 2 12 2 8 INF INF
+region b block 16 28 2 8 INF INF
+create_points 1 region a ppc 2 fix A group a
+create_points 2 region b ppc 2 fix B group b
+fix m a mpm/material density 1 eos linear 55 strength elastic 41 damage phasefield 0.1 2.0 model at1
+fix n b mpm/material density 1 neohookean 100 0.3
+fix cracks all mpm/phasefield
+timestep 0.01
+run 1
+)",
+                       "is below"),
+            0);
   EXPECT_EQ(times_said(plane("si", "f f", "0 4 0 4") +
                            "region all block INF INF INF INF INF INF\nfix grid all mpm 1.0\n"
                            "create_points 1 region box ppc 2\nfix m all mpm/material density 1.0 "
@@ -379,6 +408,9 @@ create_points 1 region box ppc 2
           {law + "1.0 2.0 model at1", "no cracks would grow without fix mpm/phasefield"},
           {law + "1.0 2.0 model at1\ngroup some id 1\nfix cracks some mpm/phasefield",
            "use group all"},
+          {"mpm_point NULL uniaxial/stress 1.0 strain 0.1 material density 1.0 eos linear 1.0 "
+           "strength elastic 1.0 damage phasefield 1.0 2.0 model at1",
+           "a point alone has none"},
           {law + "1.0 2.0 model at1" + fix + " every 0", "every"},
           {law + "1.0 2.0 model at1" + fix + " every 2.5", "every"},
           {law + "1.0 2.0 model at1" + fix + " tolerance 0", "must be above 0"},

@@ -17,6 +17,7 @@
 #include "field/mpm_field.h"
 #include "force.h"
 #include "law/phase_field.h"
+#include "update.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,9 +68,11 @@ void FixMPMPhaseField::init_physics(MPMPlan &plan)
   fields.clear();
   for (auto *field : plan.fields) {
     auto made = std::make_unique<MPMPhaseField>(lmp, *field);
-    for (const auto *material : find_fixes<FixMPMMaterial>(lmp)) {
+    const auto present = field->present_materials();
+    for (std::size_t k = 0; k < present.size(); k++) {
+      const auto *const material = field->materials[k];
       const auto cracks = phase_field_cracks(*material->material);
-      if (!cracks) continue;
+      if (!cracks || !present[k]) continue;
       check(*field, *material, *cracks);
       made->add(material, *cracks);
     }
@@ -130,8 +133,18 @@ void FixMPMPhaseField::add_stages(MPMPlan &plan, MPMPlan::Place place)
                 {Data::HISTORY, Data::OWN}, [this] {
                   if (++waited < every) return;
                   waited = 0;
-                  for (const auto &of : fields) of->solve(*this);
+                  for (const auto &of : fields) solve(*of);
                 });
+}
+
+void FixMPMPhaseField::solve(MPMPhaseField &of)
+{
+  const std::string failure = of.solve(*this);
+  if (!failure.empty())
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/phasefield {} found no solution at step {}: {}. Has the stress of points "
+               "become too large? Use a smaller time step",
+               id, update->ntimestep, failure);
 }
 
 /** Share of the points with a phase field that took part in the last solution. */

@@ -52,6 +52,7 @@ class FixMPMPhaseField : public Fix, public MPMPhysics, private MPMPhaseFieldOpt
   std::vector<std::unique_ptr<MPMPhaseField>> fields;
   int waited = 0;    // steps since the last solution
 
+  void solve(MPMPhaseField &);
   void check(const MPMField &, const class FixMPMMaterial &,
              const MPM_NS::PhaseFieldCracks &) const;
 };

@@ -193,11 +193,11 @@ void MPMPhaseField::set_points()
   });
 }
 
-void MPMPhaseField::solve(const Goal &goal)
+std::string MPMPhaseField::solve(const Goal &goal)
 {
   report = {};
   products = 0;
-  if (!find_region()) return;
+  if (!find_region()) return {};
   value.resize(field.atom->nmax);
   stiffness.resize(field.atom->nmax);
   double counts[2] = {0.0, 0.0}, all[2];
@@ -221,20 +221,21 @@ void MPMPhaseField::solve(const Goal &goal)
       },
       false);
   d = scalar.value;
-  bool known = false;    // are values of points those of the nodes?
   while (true) {
     const double changed = find_residual(report.newton == 0);
-    known = report.newton > 0 && changed <= goal.tolerance;
-    if (known || report.newton == goal.most) break;
+    if (report.newton == goal.most || (report.newton > 0 && changed <= goal.tolerance)) break;
     find_diagonal();
     change.assign(d.size(), 0.0);
     const SolveGoal of_step = {RESIDUAL, 0.0, MOST_PRODUCTS, true};
-    conjugate.solve(*this, residual.data(), change.data(), of_step);
+    const auto solved = conjugate.solve(*this, residual.data(), change.data(), of_step);
+    if (solved.outcome == SolveReport::NOT_FINITE || solved.outcome == SolveReport::INDEFINITE)
+      return "the linear system " + solved.describe();
     for (std::size_t n = 0; n < d.size(); n++) d[n] += change[n];
     report.newton++;
   }
   report.products = products;
   set_points();
+  return {};
 }
 
 double MPMPhaseField::memory_usage() const

@@ -14,8 +14,8 @@
 #include "material/phase_field.h"
 #include "solve/krylov.h"
 
-#include <array>
 #include <map>
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -44,8 +44,8 @@ class MPMPhaseField : private MPMNodeSystem {
   void add(const FixMPMMaterial *, const MPM_NS::PhaseFieldCracks &);
   bool empty() const { return cracks_of.empty(); }
   /** Finds d and sets it in the history of the points. Blocks must be those of the points, and
-   *  driving energies those of the last stress. Collective. */
-  void solve(const Goal &);
+   *  driving energies those of the last stress. Returns what has failed, or nothing. Collective. */
+  std::string solve(const Goal &);
 
   struct {
     double share = 0.0;    ///< of the points with a phase field, that took part

@@ -62,9 +62,10 @@ namespace {
    *
    *  For cohesive cracks, w_1 is w when the largest principal stress reaches the strength, and
    *  a = xi GC/(c0 l w_1): so d begins to grow at the strength in any state of stress, and the
-   *  energy is GC. Both follow with the stress until then. The driving energy is w, but not more
-   *  than w_1 (sigma_1/strength)^2: what is stored in compression breaks nothing. With AT1 and AT2,
-   *  it is w times the share of tension in the stress. */
+   *  energy is GC. Both follow with the stress until d grows, and a does not fall then: a crack may
+   *  come to a point while that is compressed, which knows nothing of its strength in tension. The
+   *  driving energy is w, but not more than w_1 (sigma_1/strength)^2: what is stored in compression
+   *  breaks nothing. With AT1 and AT2, it is w times the share of tension in the stress. */
   struct DamagePhaseField : ScalarDamage<DamagePhaseField> {
     static constexpr const char *name = "phasefield";
     static constexpr const char *meaning = "cracks by a phase field, with fix mpm/phasefield";
@@ -101,6 +102,8 @@ namespace {
                                    : PhaseField::cohesive();
     }
 
+    /** (sigma_1/strength)^2 below which stress says nothing of a. */
+    static constexpr double SMALL = 0.01;
     double inv_strength, toughness, twice;
     bool cohesive;
 
@@ -138,8 +141,9 @@ namespace {
         return 1.0 - Degradation(d, PhaseField::SQUARE).value;
       }
       const double r2 = largest * inv_strength * largest * inv_strength;
-      const double now = max(twice * r2 / max(w, 1e-300), PhaseField::LEAST);
-      const double a = d > 0.0 ? history[SHAPE][i] : now;
+      const double old = max(history[SHAPE][i], PhaseField::LEAST);
+      const double now = twice * r2 / max(w, 1e-300);
+      const double a = r2 > SMALL && (now > old || !(d > 0.0)) ? max(now, PhaseField::LEAST) : old;
       history[SHAPE][i] = a;
       history[DRIVING][i] = min(w, twice * r2 / a);
       return 1.0 - Degradation(d, a).value;

@@ -17,26 +17,29 @@ using namespace MPM_NS;
 using law::DamagePhaseField;
 using law::PhaseField;
 
-/** From the stress of a small uniaxial strain. */
+/** From the change of stress by a small uniaxial strain, so slow that rates do not matter. */
 double ComposedMaterial::youngs_modulus() const
 {
-  constexpr double STRAIN = 1e-6;
+  constexpr double STRAIN = 1e-6, SLOW = 1e30;
   std::vector<double> initial, storage(variables.size() * BATCH);
   for (const auto &variable : variables) initial.push_back(variable.initial);
   const double x[3] = {0.0, 0.0, 0.0};
   initialize(x, initial.data());
   Batch b = {};
-  b.n = 1;
-  b.dt = b.h = 1.0;
+  b.n = 2;    // without and with strain
+  b.h = 1.0;
+  b.dt = SLOW;
   b.history = reinterpret_cast<History>(storage.data());
-  for (std::size_t k = 0; k < initial.size(); k++) b.history[k][0] = initial[k];
-  for (int k = 0; k < 9; k += 4) b.F[k][0] = 1.0;
-  b.F[0][0] += STRAIN;
-  b.A[0][0] = STRAIN;
-  b.J[0] = 1.0 + STRAIN;
-  b.Jold[0] = b.vol0[0] = 1.0;
+  for (int i = 0; i < b.n; i++) {
+    for (std::size_t k = 0; k < initial.size(); k++) b.history[k][i] = initial[k];
+    for (int k = 0; k < 9; k += 4) b.F[k][i] = 1.0;
+    b.J[i] = b.Jold[i] = b.vol0[i] = 1.0;
+  }
+  b.F[0][1] = b.J[1] = 1.0 + STRAIN;
+  b.A[0][1] = STRAIN;
   update(b);
-  const double M = b.stress[0][0] / STRAIN, lambda = b.stress[1][0] / STRAIN;
+  const double M = (b.stress[0][1] - b.stress[0][0]) / STRAIN;
+  const double lambda = (b.stress[1][1] - b.stress[1][0]) / STRAIN;
   return (M - lambda) * (M + 2.0 * lambda) / (M + lambda);
 }
 

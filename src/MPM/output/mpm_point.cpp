@@ -11,6 +11,7 @@
 #include "base/mpm_input.h"
 #include "base/mpm_options.h"
 #include "material/material_point.h"
+#include "material/phase_field.h"
 
 #include "comm.h"
 #include "error.h"
@@ -186,6 +187,10 @@ void MPMPoint::parse(int narg, char **arg)
   if (every == 0) every = std::max<bigint>(1, nsteps / 1000);
 
   material = read_material(lmp, "Mpm_point", iarg + 1, narg, arg);
+  if (phase_field_cracks(*material))
+    error->all(FLERR,
+               "Mpm_point: cracks of damage phasefield are found at nodes, and a point alone has "
+               "none: use damage rankine with soften energy");
 }
 
 double MPMPoint::value_at(const NumberOrVariable &v, double time)
