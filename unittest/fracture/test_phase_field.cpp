@@ -229,6 +229,53 @@ SERIAL_TEST(Bar, BreaksInSpaceAsInThePlane)
   EXPECT_NEAR(solid.variable("energy") / (2.0e-3 * flat.variable("energy")), 1.0, 0.01);
 }
 
+// A long notch in a strip whose long edges are moved apart: the energy M (u/H)^2 H/2 that the strip
+// has ahead of it is free when it has passed. It begins to grow when this is GC (A.A. Griffith,
+// Philos. Trans. A 221 (1921) 163; R.S. Rivlin, A.G. Thomas, J. Polym. Sci. 10 (1953) 291)
+SERIAL_TEST(NotchedStrip, BreaksWhenTheEnergyThatIsReleasedIsGC)
+{
+  Scene run(R"lmp(
+units si
+dimension 2
+boundary f f p
+atom_style mpm
+neighbor 0.0005 bin
+region box block -0.004 0.052 -0.016 0.016 -0.0005 0.0005
+create_box 1 box
+fix grid all mpm 0.001 apart ignore gain ignore
+region plate block 0 0.048 -0.013 0.013 INF INF
+region notch block INF 0.022 -0.0015 0.0015 INF INF side out
+region body intersect 2 plate notch
+create_points 1 region body ppc 2
+variable isgrip atom "abs(y)>0.01"
+group grips variable isgrip
+group bulk subtract all grips
+variable elastic string "eos linear 5.5555556e9 strength elastic 4.1666667e9"
+fix grips grips mpm/material density 2.0e9 ${elastic}
+fix bulk bulk mpm/material density 2000 ${elastic} damage phasefield 50 0.002 model cohesive 10.0e6
+fix cracks all mpm/phasefield
+variable speed internal 0.04
+variable vy atom "v_speed*(y/0.01*(abs(y)<=0.01)+(y>0.01)-(y<-0.01))"
+velocity all set 0 v_vy 0
+fix step all mpm/dt 0.4
+compute d all mpm/atom phase
+variable tip atom x*(c_d>0.9)
+compute tip all reduce max v_tip
+compute high all reduce max y
+thermo_style custom step c_tip c_high
+variable release equal 0.5*1.1111111e10*(2.0*(c_high-0.01275)/0.02)^2*0.02/50
+run 0
+)lmp");
+  const auto pull_until = [&](double release) {
+    do run.commands("run 10 post no\n");
+    while (run.variable("release") < release && run.compute_scalar("tip") < 0.0245);
+  };
+  pull_until(0.7);
+  run.commands("variable speed internal 0.01\nvelocity all set 0 v_vy 0\n");    // without a jolt
+  pull_until(2.0);    // or until the crack is two cells long
+  EXPECT_NEAR(measured("energy released over GC", run.variable("release")), 1.0, 0.05);
+}
+
 // AT1 has a strength that follows from its length, here 6.99 MPa with 4 mm, and the same energy.
 // The bar breaks next to a grip, where the stress is larger by some percent
 SERIAL_TEST(Bar, WithAT1BreaksAtTheStrengthOfItsLength)
