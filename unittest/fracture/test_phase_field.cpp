@@ -169,9 +169,9 @@ struct PulledStrip {
   }
 };
 
-/** Pulls until an opening of 30 um, 1.5 times that at which a cohesive crack is free of stress.
- *  Returns the largest stress. */
-static double pull_apart(Scene &run, double speed, double opening = 30.0e-6)
+/** Pulls until 1.5 times the opening, 2 GC/strength, at which a cohesive crack in the weak band is
+ *  free of stress. Returns the largest stress. */
+static double pull_apart(Scene &run, double speed, double opening = 3.0 * 50.0 / 4.75e6)
 {
   double largest = 0.0;
   run.commands("variable more equal v_t<" + strprintf("%g", 0.5 * opening / speed) + "\n");
@@ -198,7 +198,7 @@ SERIAL_PARAMETER_TEST(Bar, BreaksAtItsStrengthWithTheEnergyGC, std::vector<doubl
   EXPECT_NEAR(measured("largest stress", stress / 4.75e6), 1.0, 0.04);
   EXPECT_NEAR(measured("energy", run.variable("energy")), 1.0, 0.05);
   EXPECT_GT(run.compute_scalar("most"), 0.95);
-  EXPECT_LT(measured("stress left", run.compute_scalar("stress") / 4.75e6), 0.07);
+  EXPECT_LT(measured("stress left", run.compute_scalar("stress") / 4.75e6), 0.06);
 }
 
 // The energy of a crack hardly depends on its direction; a band of cells that soften spends 1.6 to
@@ -213,9 +213,10 @@ SERIAL_PARAMETER_TEST(TurnedStrip, BreaksWithTheEnergyGC, double, Values(0.0, 22
   EXPECT_NEAR(measured("energy", run.variable("energy")), 1.0, 0.1);
   const double *const e = run.compute_vector();
   EXPECT_NEAR(e[10] / e[11], 0.0, 1.0e-9);    // residual
-  EXPECT_NEAR(measured("integration", e[9] / e[11]), 0.0, 0.05);
+  EXPECT_NEAR(measured("integration", e[9] / e[11]), 0.0, 0.02);
 }
 
+// The region of a solution is another one, as blocks of nodes are smaller in space
 SERIAL_TEST(Bar, BreaksInSpaceAsInThePlane)
 {
   PulledStrip bar;
@@ -225,7 +226,7 @@ SERIAL_TEST(Bar, BreaksInSpaceAsInThePlane)
       solid(replaced(
           plane, {{"dimension 2", "dimension 3"}, {"$(-0.5*v_h) $(0.5*v_h)", "$(-v_h) $(v_h)"}}));
   const double stress = pull_apart(flat, bar.speed), same = pull_apart(solid, bar.speed);
-  EXPECT_NEAR(same / stress, 1.0, 0.01);
+  EXPECT_NEAR(same / stress, 1.0, 1.0e-4);
   EXPECT_NEAR(solid.variable("energy") / (2.0e-3 * flat.variable("energy")), 1.0, 0.01);
 }
 
@@ -289,7 +290,7 @@ SERIAL_TEST(Bar, WithAT1BreaksAtTheStrengthOfItsLength)
   const double E = 1.0e10 / (1.0 - 0.04);    // plane strain
   const double strength = std::sqrt(3.0 * E * 50.0 / (8.0 * 4.0e-3));
   EXPECT_NEAR(measured("largest stress", pull_apart(run, bar.speed) / strength), 1.0, 0.06);
-  EXPECT_NEAR(measured("energy", run.variable("energy")), 1.0, 0.1);
+  EXPECT_NEAR(measured("energy", run.variable("energy")), 1.0, 0.05);
 }
 
 // Periodic faces may be where the bar breaks, or within reach of its crack: in the middle of a
@@ -309,7 +310,7 @@ SERIAL_PARAMETER_TEST(BarAtPeriodicFaces, BreaksAsElsewhere, double, Values(16.0
   Scene whole(moved(GetParam() == 16.0 ? 0.0 : -4.0, "f p p")), across(moved(GetParam(), "p p p"));
   for (auto *run : {&whole, &across}) pull_apart(*run, bar.speed);
   EXPECT_EQ(across.evaluate("f_cracks"), whole.evaluate("f_cracks"));
-  EXPECT_NEAR(across.variable("energy"), whole.variable("energy"), 1.0e-6);
+  EXPECT_NEAR(across.variable("energy"), whole.variable("energy"), 1.0e-9);
 }
 
 // Below the strength nothing happens, not even to the last bit
@@ -380,7 +381,7 @@ SERIAL_TEST(SplitStrip, HasNoStressLeft)
     energy[k] = measured(k ? "energy, whole" : "energy, split", run.variable("energy"));
   }
   EXPECT_LT(std::fabs(stress[0]), 0.02);
-  EXPECT_NEAR(energy[0], energy[1], 0.1);
+  EXPECT_NEAR(energy[0], energy[1], 0.06);
 }
 
 TEST(PhaseField, RanksAgreeAlsoAfterARestart)
@@ -390,10 +391,10 @@ TEST(PhaseField, RanksAgreeAlsoAfterARestart)
   strip.speed = 0.2;
   strip.fix = "every 3";
   const std::string scene = strip.scene();
-  Twins run(scene, 350, lines_again(scene), 100, 1e-9);
+  Twins run(scene, 350, lines_again(scene), 100, 1e-10);
   EXPECT_GT(run.whole.evaluate("c_most"), 0.1);
   Scene balanced(scene + "fix bal all balance 40 1.05 shift xy 10 1.1\nrun 350\nrun 100\n");
-  EXPECT_LT(difference(run.serial.gather(), balanced.gather()), 1e-9);
+  EXPECT_LT(difference(run.serial.gather(), balanced.gather()), 1e-10);
 }
 
 SERIAL_TEST(PhaseFieldInput, IsToldOf)
