@@ -60,6 +60,7 @@ BETWEEN = [
     "fix fuzzh all halt 1 v_fuzz > 0", "fix fuzzv all ave/atom 1 1 1 vx", "fix fuzzw all wall/reflect xlo EDGE",
     "compute fuzzc all mpm/energy", "compute fuzzc all mpm/atom stress pressure", "compute fuzzc all mpm/error v_fuzz",
     "compute fuzzc all mpm/fragment", "compute fuzzc all mpm/fragment separable 0.5",
+    "compute fuzzc all mpm/jintegral tip 1 1 direction 1 0 radius 0.5 2 inertia yes",
     "rerun fuzz.dump dump x y z", "read_dump fuzz.dump 0 x y z", 
     "pair_style none", "pair_style zero 1.0\npair_coeff * *", "suffix omp", "package omp 1", 
     "fix_modify %(fix)s energy yes virial yes", "fix_modify %(fix)s respa 1", "compute_modify %(compute)s dynamic yes",

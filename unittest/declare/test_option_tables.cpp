@@ -38,6 +38,7 @@
 #include "meshgrid/fix_mpm_mesh_contact.h"
 #include "meshgrid/fix_mpm_mesh_heat.h"
 #include "output/compute_mpm_fragment.h"
+#include "output/compute_mpm_jintegral.h"
 #include "output/fix_mpm_record.h"
 #include "output/mpm_point.h"
 #include "pore/fix_mpm_mixture.h"
@@ -63,6 +64,7 @@ static std::map<std::string, std::string> files()
   add("create_points_table", CreatePointsTableOptions().declare(3, true));
   add("create_points_mesh", CreatePointsMeshOptions().declare("create_points mesh", 3, true, true));
   add("compute_mpm_fragment", MPMFragmentOptions().declare());
+  add("compute_mpm_jintegral", MPMJIntegralOptions().declare(3));
   add("fix_mpm", MPMFieldOptions().declare(3));
   add("fix_mpm_airbag", MPMAirbagOptions().declare());
   add("fix_mpm_boundary", MPMBoundaryOptions().declare(3));
