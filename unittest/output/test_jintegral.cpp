@@ -7,6 +7,7 @@
 
 // compute mpm/jintegral
 
+#include "base/mpm_image.h"
 #include "error.h"
 #include "mpm_lammps.h"
 
@@ -69,9 +70,10 @@ static void set_field(Scene &run, const TipField &field, const double *tip, cons
 {
   constexpr int voigt[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
   for (int i = 0; i < run.n(); i++) {
-    double x[2], H[3][3] = {};
-    for (int a = 0; a < 2; a++)
-      for (int d = x[a] = 0; d < 3; d++) x[a] += e[a][d] * (run.x()[i][d] - tip[d]);
+    double x[2], dx[3], H[3][3] = {};
+    for (int d = 0; d < 3; d++) dx[d] = run.x()[i][d] - tip[d];
+    nearest_image(*run.lmp->domain, dx);
+    for (int a = 0; a < 2; a++) x[a] = e[a][0] * dx[0] + e[a][1] * dx[1] + e[a][2] * dx[2];
     for (int b = 0; b < 2; b++) {
       constexpr double STEP = 1.0e-6;
       double there[2] = {x[0], x[1]}, back[2] = {x[0], x[1]};
@@ -147,14 +149,7 @@ PARAMETER_TEST(KnownFields, AreFound, Known,
             "create_points 1 region body ppc 2\nfix m all mpm/material " + ELASTIC + "\n" +
             strprintf("variable x equal %.10f\n", tip[0]) + "compute J all mpm/jintegral tip" + at +
             " direction" + vector(e[0].data()) + " radius 3 9 " + k.more + "\nrun 0\n");
-  // points beyond a periodic face have the field that their image has
-  double center[3];
-  std::copy_n(tip, 3, center);
-  if (k.faces[0] == 'p')
-    for (int i = 0; i < run.n(); i++)
-      for (int d = 0; d < k.dim; d++)
-        if (d != k.front) run.x()[i][d] += run.x()[i][d] < tip[d] - 10.0 ? 20.0 : 0.0;
-  set_field(run, k.field, center, e);
+  set_field(run, k.field, tip, e);
   const Found now = found(run);
   const double J = k.field.J() / run.lmp->force->nktv2p;
   EXPECT_NEAR(now.J, J, 0.004 * J);
