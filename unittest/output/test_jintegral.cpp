@@ -159,7 +159,7 @@ PARAMETER_TEST(KnownFields, AreFound, Known,
 }
 
 // What one half of the points gives is doubled
-TEST(KnownFields, OfOneHalf)
+TEST(HalfFields, AreDoubled)
 {
   const double tip[3] = {0.3, 0.5, 0.0};
   const Axes e = axes_of(2, 0.0);
