@@ -18,6 +18,7 @@
 #include "base/mpm_options.h"
 #include "base/mpm_state.h"
 #include "comm.h"
+#include "domain.h"
 #include "error.h"
 #include "field/mpm_field.h"
 #include "field/mpm_forces.h"
@@ -33,6 +34,8 @@ using namespace LAMMPS_NS;
 using namespace MPM_NS;
 
 static constexpr int LOOK_EVERY = 50;    // steps after which ranks compare what they have seen
+// opening at which bonds have broken, in node spacings: nodes lose area as bodies part
+static constexpr double REACH = 0.25;
 
 /** fix ID all mpm/contact FIELD FIELD ...  law ... normal ... gap ... */
 Options MPMContactOptions::declare()
@@ -54,6 +57,7 @@ Options MPMContactOptions::declare()
                 {optional(number(full, "share", {0.5, 1.0, true}, "",
                                  "share of the volume of a node that bodies fill when they touch; "
                                  "default: 1"))}}})});
+  cohesion.declare_keywords(o, bonded);
   heat.declare(
       o,
       "the energy lost by friction becomes heat, which two bodies share in the ratio of their "
@@ -61,7 +65,20 @@ Options MPMContactOptions::declare()
       "share of this energy for the body that is named first; the other body gets the rest");
   o.refuse([=] {
     const bool slides = law == ADHESIVE || (law == COULOMB && friction.kinetic > 0.0);
+    const bool coheres = law == COHESIVE;
+    const auto needs_cohesion = [=](bool given, const char *keyword) {
+      return OptionRule{given && !coheres, keyword, "belongs to law cohesive: drop it"};
+    };
     return OptionRules{
+        {heat.heats() && coheres, "heat",
+         "is not known to law cohesive: drop the keyword, or use law coulomb or adhesive"},
+        needs_cohesion(cohesion.softening != MPMCohesiveLaw::LINEAR, "softening"),
+        needs_cohesion(cohesion.stiffness > 0.0, "stiffness"),
+        needs_cohesion(cohesion.mixing != 1.0, "mixing"),
+        needs_cohesion(!bonded.empty(), "bonded"),
+        {coheres && !gap, "law", "cohesive must know where bodies touch: drop gap no"},
+        {coheres && normal_by == MASS, "law",
+         "cohesive needs the area of the interface: use normal volume or colinear"},
         {heat.heats() && !slides, "heat",
          "is that of friction: use law coulomb or adhesive, or drop the keyword"},
         coefficients(),
@@ -77,7 +94,7 @@ Options MPMContactOptions::declare()
 }
 
 FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), bodies(lmp), search(lmp, *this, *this, *this, bodies),
+    FixMPMState(lmp, narg, arg), bodies(lmp), search(lmp, *this, *this, *this, bodies),
     solver(lmp, *this, bodies), trial(lmp, *this, *this, *this, bodies, search, contacts),
     report(lmp)
 {
@@ -106,6 +123,20 @@ FixMPMContact::FixMPMContact(LAMMPS *lmp, int narg, char **arg) :
   pressure_unit = force->ftm2v / force->nktv2p;
   bodies.by_mass = normal_by == MASS;
   if (heat.heats()) heating = std::make_unique<MPMFrictionHeat>(lmp, heat);
+  if (law == COHESIVE) {
+    const MPMContactLaw &as_law = *this;
+    interface =
+        std::make_unique<MPMCohesiveInterface>(lmp, *this, as_law, bodies, search, array_atom);
+    state.declare(array_atom, "mpm/contact:bond", MPMCohesiveInterface::WIDTH,
+                  [](int, double *row) {
+                    row[MPMCohesiveInterface::DAMAGE] = MPMCohesiveInterface::NO_BOND;
+                    std::fill_n(row + MPMCohesiveInterface::OPENING, 3, 0.0);
+                  });
+    keep_arrays();
+    peratom_flag = 1;
+    peratom_freq = 1;
+    size_peratom_cols = MPMCohesiveInterface::WIDTH;
+  }
 
   scalar_flag = array_flag = 1;
   size_array_rows = (int) report.entries.size();
@@ -164,11 +195,40 @@ void FixMPMContact::check_bodies()
                   {field->options.stress_before(), "scheme usf and usavg",
                    "these need the contact before it is known: use usl or musl"}});
   }
+  check_cohesion();
   if (law == ADHESIVE && 2.0 * release_work / normal_strength > first.lattice.h)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/contact {}: adhesion ends at a gap of 2 * work / strength = {}, which is "
                "more than the node spacing {}: raise the strength or the node spacing",
                id, 2.0 * release_work / normal_strength, first.lattice.h);
+}
+
+void FixMPMContact::check_cohesion() const
+{
+  if (law != COHESIVE) return;
+  if (!bonded.empty() && !domain->get_region_by_id(bonded))
+    error->all(FLERR, Error::NOLASTLINE, "Region {} for fix mpm/contact {} bonded does not exist",
+               bonded, id);
+  for (const double share : {0.0, 1.0}) {
+    const double s = cohesion.strength(share), least = s * s / (2.0 * cohesion.energy(share));
+    if (cohesion.stiffness > 0.0 && !(cohesion.stiffness > least))
+      error->all(FLERR, Error::NOLASTLINE,
+                 "Fix mpm/contact {}: with stiffness {}, the energy {} is spent before the "
+                 "strength {} is reached: use one above strength^2 / (2 * energy) = {}",
+                 id, cohesion.stiffness, cohesion.energy(share), s, least);
+  }
+  const double last = cohesion.last_opening(), h = bodies[0].field->lattice.h;
+  if (last > REACH * h)
+    error->all(FLERR, Error::NOLASTLINE,
+               "Fix mpm/contact {}: cohesion ends at an opening of {}, which is more than {} of "
+               "the node spacing {}: raise the strength or the node spacing",
+               id, last, REACH, h);
+  for (const auto &body : bodies.list)
+    refuse_field(lmp, *this, *body.field,
+                 {{body.field->options.scheme != MPMFieldOptions::USL, "this scheme",
+                   "law cohesive needs scheme usl"},
+                  {pore_pressure(*body.field) != nullptr, "fix mpm/pore",
+                   "law cohesive does not know pore water: use another law"}});
 }
 
 void FixMPMContact::check_other_contacts() const
@@ -202,7 +262,7 @@ void FixMPMContact::check_refined(MPMContactBody &body)
   bodies.on_several_lattices = true;
   refuse_field(
       lmp, *this, *body.field,
-      {{law == ADHESIVE, "fix mpm/refine",
+      {{law == ADHESIVE || law == COHESIVE, "fix mpm/refine",
         "adhesion needs the area of the interface, which nodes share with those of finer "
         "lattices: use another law"},
        {normal_by == LOGISTIC, "fix mpm/refine",
@@ -215,6 +275,7 @@ void FixMPMContact::refuse_implicit_steps() const
     bool given;
     const char *what, *instead;
   } unknown[] = {{law == ADHESIVE, "law adhesive", "use law stick"},
+                 {law == COHESIVE, "law cohesive", "use law stick"},
                  {friction.still > friction.kinetic, "a coefficient of static friction",
                   "use one coefficient"},
                  {normal_by != COLINEAR,
@@ -314,6 +375,7 @@ void FixMPMContact::count(const MPMContacts::Node &node, const MPMContactBodies:
       work = -heat / force->mvv2e;
     }
     entry.work += work;
+    if (pair.bond) bodies[pair.a].field->ledger.driven += work * force->mvv2e;    // may come back
   }
   bodies.book(node.record, start);
 }
@@ -348,9 +410,22 @@ void FixMPMContact::act(double dt, Stage stage)
     search.find(dt, contacts);
     if (heating) heating->begin_step();
   }
+  if (interface) {
+    const bool joins = !is_bonded;
+    if (joins) interface->join(contacts, bonded);
+    is_bonded = true;
+    interface->find(contacts);
+    if (joins) {
+      const double area = interface->bonded_area(contacts);
+      if (comm->me == 0)
+        utils::logmesg(lmp, "Fix mpm/contact {}: bodies are bonded on an area of {:.6g}\n", id,
+                       area);
+    }
+  }
   solver.solve(contacts, dt, false, [this](const auto &node, const auto &start) {
     count(node, start);
   });
+  if (interface) interface->open(contacts, dt);
   bind_nodes();
   if (++steps % LOOK_EVERY == 1) {
     solver.report_unsolved(id);
@@ -360,7 +435,7 @@ void FixMPMContact::act(double dt, Stage stage)
 
 void FixMPMContact::write_restart(FILE *fp)
 {
-  std::vector<double> total(1, size_array_rows);
+  std::vector<double> total = {(double) size_array_rows, (double) is_bonded};
   for (int p = 0; p < size_array_rows; p++) {
     keep_totals(world, &report.entries[p].work, 1);
     total.push_back(report.entries[p].work);
@@ -382,7 +457,7 @@ void FixMPMContact::restart(char *buf)
                "Fix mpm/contact {} had another number of fields when the restart file was written: "
                "name as many, or give the fix another ID to begin anew",
                id);
-  const std::size_t size = (1 + size_array_rows) * sizeof(double);
+  const std::size_t size = (2 + size_array_rows) * sizeof(double);
   if (state.size() <= size) refuse_state(lmp, id);
   const std::string ours = utils::join_words(names, " "),
                     theirs(state.data() + size, state.size() - size - 1);
@@ -391,12 +466,14 @@ void FixMPMContact::restart(char *buf)
                "Fix mpm/contact {} was between {} when the restart file was written, not {}: name "
                "them in this order, or give the fix another ID to begin anew",
                id, theirs, ours);
+  is_bonded = from[1] != 0.0;
   for (int p = 0; p < size_array_rows; p++)
-    report.entries[p].work = comm->me == 0 ? from[1 + p] : 0.0;
+    report.entries[p].work = comm->me == 0 ? from[2 + p] : 0.0;
 }
 
 double FixMPMContact::memory_usage()
 {
-  return (heating ? heating->memory_usage() : 0.0) + bodies.memory_usage() +
+  return FixMPMState::memory_usage() + (heating ? heating->memory_usage() : 0.0) +
+      (interface ? interface->memory_usage() : 0.0) + bodies.memory_usage() +
       bytes_of(contacts.pairs, contacts.nodes);
 }

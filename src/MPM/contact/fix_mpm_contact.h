@@ -15,6 +15,8 @@ FixStyle(mpm/contact,FixMPMContact);
 #ifndef LMP_FIX_MPM_CONTACT_H
 #define LMP_FIX_MPM_CONTACT_H
 
+#include "base/mpm_state.h"
+#include "contact/mpm_cohesive_interface.h"
 #include "contact/mpm_contact_bodies.h"
 #include "contact/mpm_contact_search.h"
 #include "contact/mpm_contact_solver.h"
@@ -24,7 +26,6 @@ FixStyle(mpm/contact,FixMPMContact);
 #include "field/mpm_coupling.h"
 #include "field/mpm_friction_heat.h"
 #include "field/mpm_node_action.h"
-#include "fix.h"
 
 #include <memory>
 #include <string>
@@ -34,13 +35,14 @@ namespace LAMMPS_NS {
 /** Keywords of fix mpm/contact. */
 struct MPMContactOptions : MPMContactLaw, MPMContactSearchOptions {
   MPMFrictionHeatOptions heat;
+  std::string bonded;    ///< ID of a region; empty: all of the interface
 
   MPM_NS::Options declare();
 };
 
 /** Contact between bodies, each a field (fix mpm), at the nodes that they share on one lattice. */
 class FixMPMContact :
-    public Fix,
+    public FixMPMState,
     public MPMNodeAction,
     public MPMRubbing,
     public MPMCoupling,
@@ -83,15 +85,18 @@ class FixMPMContact :
   MPMContactSolver solver;    // of explicit steps
   MPMContactTrial trial;      // of implicit steps
   MPMContactReport report;
-  std::unique_ptr<MPMFrictionHeat> heating;    // null: not requested
-  bool in_implicit_steps = false;              // does a solver do the steps of this run?
-  bigint steps = 0;                            // number of steps of this fix in this run
+  std::unique_ptr<MPMFrictionHeat> heating;           // null: not requested
+  std::unique_ptr<MPMCohesiveInterface> interface;    // null: bodies do not cohere
+  bool is_bonded = false;                             // has the first step bonded them?
+  bool in_implicit_steps = false;                     // does a solver do the steps of this run?
+  bigint steps = 0;                                   // number of steps of this fix in this run
 
   void find_bodies();
   void check_bodies();
   void check_refined(MPMContactBody &);
   void check_other_contacts() const;
   void refuse_implicit_steps() const;
+  void check_cohesion() const;
   double heat_of(const MPMNodeContact &, bool owned);
   void bind_nodes();
   void count(const MPMContacts::Node &, const MPMContactBodies::Velocities &start);

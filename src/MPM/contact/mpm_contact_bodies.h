@@ -45,6 +45,7 @@ struct MPMContactBody {
   /** Index of the node with this record. */
   int64_t node_of(const double *record) const;
   const double *gradient_at(const double *record) const { return &gradient[3 * node_of(record)]; }
+  double fraction_at(const double *record) const { return fraction[node_of(record)]; }
   /** Node with this index, also beyond periodic faces; -1: the body has none there. */
   int64_t node_at(const int *index) const;
   /** Does this rank know what the body has at the node with this index? */

@@ -68,6 +68,68 @@ void MPMContacts::clear()
   pairs.clear();
 }
 
+void MPMContacts::keep(const std::function<bool(MPMNodeContact &)> &keep)
+{
+  std::size_t npairs = 0, nnodes = 0;
+  for (Node node : nodes) {
+    const int first = (int) npairs;
+    for (int p = node.first; p < node.last; p++)
+      if (keep(pairs[p])) pairs[npairs++] = pairs[p];
+    if ((int) npairs == first) continue;
+    node.first = first;
+    node.last = (int) npairs;
+    nodes[nnodes++] = node;
+  }
+  pairs.resize(npairs);
+  nodes.resize(nnodes);
+}
+
+std::vector<int> MPMContacts::index_of_nodes(MPMContactBodies &bodies, int k) const
+{
+  const Grid &grid = bodies[k].field->grid;
+  std::vector<int> index(grid.nnodes(), -1);
+  for (std::size_t m = 0; m < nodes.size(); m++)
+    if (nodes[m].record[k]) index[bodies[k].node_of(nodes[m].record[k])] = (int) m;
+  for (const int slot : bodies[k].images)
+    for (int n = 0; n < NODES_PER_BLOCK; n++) {
+      if (!(grid.blocks[slot].alias >> n & 1)) continue;
+      int at[3];
+      grid.node_index(grid.blocks[slot], n, at);
+      for (int d = 0; d < grid.lattice.dim; d++) at[d] = grid.lattice.wrap(d, at[d]);
+      const int64_t canonical = grid.locate(at);
+      if (canonical >= 0) index[(int64_t) slot * NODES_PER_BLOCK + n] = index[canonical];
+    }
+  return index;
+}
+
+/** By pairs of bodies, on the nodes of the first of them. */
+void MPMContacts::sum(MPMContactBodies &bodies, int width, std::vector<double> &rows) const
+{
+  const MPI_Comm world = bodies[0].field->lmp->world;
+  const int nbodies = bodies.size();
+  int nprocs;
+  MPI_Comm_size(world, &nprocs);
+  if (nprocs == 1) return;
+  std::vector<char> meet(nbodies * nbodies, 0);    // pairs of bodies, on any rank
+  for (const auto &pair : pairs) meet[pair.a * nbodies + pair.b] = 1;
+  MPI_Allreduce(MPI_IN_PLACE, meet.data(), nbodies * nbodies, MPI_CHAR, MPI_MAX, world);
+  std::vector<double> shared;
+  for (int a = 0; a < nbodies; a++)
+    for (int b = a + 1; b < nbodies; b++) {
+      if (!meet[a * nbodies + b]) continue;
+      shared.assign(bodies[a].field->grid.nnodes() * width, 0.0);
+      for (const bool summed : {false, true}) {
+        if (summed) bodies[a].field->nodes.halo->sum(shared.data(), width, 0, width);
+        for (std::size_t p = 0; p < pairs.size(); p++) {
+          if (pairs[p].a != a || pairs[p].b != b) continue;
+          double *const mine = &rows[p * width],
+                        *const node = &shared[bodies[a].node_of(pairs[p].ra) * width];
+          std::copy_n(summed ? node : mine, width, summed ? mine : node);
+        }
+      }
+    }
+}
+
 void MPMContactSearch::begin_run()
 {
   is_first_step = true;
@@ -168,7 +230,8 @@ bool MPMContactSearch::is_in_contact(const MPMSharedBlock &block, int n, double 
     if ((touches || filled > NEARLY * options.full) && (block.owned >> n & 1))
       water_sums[touches ? 0 : 1] += std::fabs(pair.water);
   }
-  return touches;
+  pair.touches = touches;
+  return touches || law.law == MPMContactLaw::COHESIVE;
 }
 
 /** Force along the normal that water takes, positive if it pushes. */
@@ -255,31 +318,11 @@ void MPMContactSearch::separate_points(MPMContacts &contacts) const
   const auto &nodes = contacts.nodes;
   auto &pairs = contacts.pairs;
 
-  // contact nodes by their index in the grids of the fields; images on periodic axes are the same
-  // node
   std::vector<std::vector<int>> wanted(nfields);
-  for (int k = 0; k < nfields; k++) {
-    Grid &grid = bodies[k].field->grid;
-    wanted[k].assign(grid.nnodes(), -1);
-    for (std::size_t m = 0; m < nodes.size(); m++)
-      if (nodes[m].record[k]) wanted[k][bodies[k].node_of(nodes[m].record[k])] = (int) m;
-    for (const int slot : bodies[k].images)
-      for (int n = 0; n < NODES_PER_BLOCK; n++) {
-        if (!(grid.blocks[slot].alias >> n & 1)) continue;
-        int index[3];
-        grid.node_index(grid.blocks[slot], n, index);
-        for (int d = 0; d < dim; d++) index[d] = grid.lattice.wrap(d, index[d]);
-        const int64_t canonical = grid.locate(index);
-        if (canonical >= 0) wanted[k][(int64_t) slot * NODES_PER_BLOCK + n] = wanted[k][canonical];
-      }
-  }
-
-  std::vector<char> meet(nfields * nfields, 0);    // pairs of bodies, on any rank
-  for (const auto &pair : pairs) meet[pair.a * nfields + pair.b] = 1;
-  MPI_Allreduce(MPI_IN_PLACE, meet.data(), nfields * nfields, MPI_CHAR, MPI_MAX, world);
+  for (int k = 0; k < nfields; k++) wanted[k] = contacts.index_of_nodes(bodies, k);
 
   std::vector<PlaneBetween> planes(pairs.size());
-  std::vector<double> sums(pairs.size() * NREAL), shared;
+  std::vector<double> sums(pairs.size() * NREAL);
   for (int round = 0; round < PlaneBetween::ROUNDS; round++) {
     sums.assign(sums.size(), 0.0);
     for (int k = 0; k < nfields; k++)
@@ -293,23 +336,7 @@ void MPMContactSearch::separate_points(MPMContacts &contacts) const
                      }
                    });
 
-    if (comm->nprocs > 1)    // by pairs of bodies, on the nodes of the first of them
-      for (int a = 0; a < nfields; a++) {
-        for (int b = a + 1; b < nfields; b++) {
-          if (!meet[a * nfields + b]) continue;
-          shared.assign(bodies[a].field->grid.nnodes() * NREAL, 0.0);
-          for (const bool summed : {false, true}) {
-            if (summed) bodies[a].field->nodes.halo->sum(shared.data(), NREAL, 0, NREAL);
-            for (std::size_t p = 0; p < pairs.size(); p++) {
-              if (pairs[p].a != a || pairs[p].b != b) continue;
-              double *const mine = &sums[p * NREAL];
-              double *const node = &shared[bodies[a].node_of(pairs[p].ra) * NREAL];
-              std::copy_n(summed ? node : mine, NREAL, summed ? mine : node);
-            }
-          }
-        }
-      }
-
+    contacts.sum(bodies, NREAL, sums);
     for (std::size_t p = 0; p < pairs.size(); p++) planes[p].advance(&sums[p * NREAL], dim);
   }
 

@@ -14,6 +14,7 @@
 #include "contact/mpm_node_contact.h"
 #include "pointers.h"
 
+#include <functional>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -32,6 +33,12 @@ struct MPMContacts {
   std::vector<MPMNodeContact> pairs;
 
   void clear();
+  /** Keeps the pairs for which keep(pair) is true; it is called once for each, in their order. */
+  void keep(const std::function<bool(MPMNodeContact &)> &keep);
+  /** For the nodes of body k: the index here, also of periodic images; -1: none. */
+  std::vector<int> index_of_nodes(MPMContactBodies &, int k) const;
+  /** Sums rows of width reals, one row for each pair, over ranks. Collective. */
+  void sum(MPMContactBodies &, int width, std::vector<double> &rows) const;
 };
 
 /** Finds where bodies are in contact, and the normals of their interfaces. */

@@ -18,7 +18,15 @@
 
    Pore water takes a part J_w of J_n, dt int N p n over the surface of a body, as on walls. The
    rest is between grains and gives friction: J_t <= mu (J_n - J_w). Where J_n would be below J_w,
-   grains part, and the water alone pushes. */
+   grains part, and the water alone pushes.
+
+   A bond with the opening d at the start of the step and the compliance f is a spring. Its impulse
+
+     J = -A dt (d + theta dt w)/f,   theta = c/(f + c),  c = A dt^2/m
+
+   with the velocity w = -u at which it opens at the end of the step, is that of the opening at the
+   start where the spring is soft, which keeps energy, and at the end where it is stiff, which is
+   stable. The largest J is that of the strength that is left. */
 
 #include "contact/mpm_node_contact.h"
 
@@ -38,7 +46,7 @@ using namespace MPM_NS;
 
 static constexpr double APPROACH = 1.0e-12;
 
-void MPMContactLaw::declare_law(Options &o, bool adhesion)
+void MPMContactLaw::declare_law(Options &o, bool bonds)
 {
   using namespace option;
   std::vector<OptionWord> laws = {
@@ -50,7 +58,9 @@ void MPMContactLaw::declare_law(Options &o, bool adhesion)
         optional(number(friction.still, "mu_s", NOT_NEGATIVE, "1",
                         "coefficient of static friction, not below mu; default: mu"))}},
       {"stick", STICK, "bodies do not slide while they press on each other"}};
-  if (adhesion)
+  if (bonds) {
+    const auto additional = optional(number(friction.kinetic, "mu", NOT_NEGATIVE, "1",
+                                            "coefficient of additional friction; default: 0"));
     laws.push_back({"adhesive",
                     ADHESIVE,
                     "bodies that touch resist separation and sliding",
@@ -58,8 +68,17 @@ void MPMContactLaw::declare_law(Options &o, bool adhesion)
                      number(shear_strength, "ss", NOT_NEGATIVE, "pressure", "shear strength"),
                      number(release_work, "work", NOT_NEGATIVE, "pressure*distance",
                             "work to separate the bodies, per area"),
-                     optional(number(friction.kinetic, "mu", NOT_NEGATIVE, "1",
-                                     "coefficient of additional friction; default: 0"))}});
+                     additional}});
+    laws.push_back(
+        {"cohesive",
+         COHESIVE,
+         "bodies that touch at the start are bonded, until the bond has broken",
+         {numbers(cohesion.strengths, 2, "sn ss", POSITIVE, "pressure",
+                  "strengths in tension and in shear"),
+          numbers(cohesion.energies, 2, "GI GII", POSITIVE, "pressure*distance",
+                  "energies of separation in tension (mode I) and in shear (mode II), per area"),
+          additional}});
+  }
   o.add("law", {word(law, laws)}).standard("frictionless");
 }
 
@@ -71,14 +90,15 @@ OptionRule MPMContactLaw::coefficients() const
 
 void MPMContactLaw::complete()
 {
-  if (friction.still < 0.0 || law == ADHESIVE) friction.still = friction.kinetic;
+  if (friction.still < 0.0 || law == ADHESIVE || law == COHESIVE) friction.still = friction.kinetic;
 }
 
 bool MPMContactLaw::operator==(const MPMContactLaw &other) const
 {
   return law == other.law && friction.kinetic == other.friction.kinetic &&
       friction.still == other.friction.still && normal_strength == other.normal_strength &&
-      shear_strength == other.shear_strength && release_work == other.release_work;
+      shear_strength == other.shear_strength && release_work == other.release_work &&
+      cohesion == other.cohesion;
 }
 
 double MPMContactLaw::adhesion_at(double opening) const
@@ -182,6 +202,54 @@ double MPMNodeContact::limit(const MPMContactLaw &law, double mass, int dim, dou
   return keep;
 }
 
+/** From the impulses that would make bodies stick, finds those of the bond, of contact where it is
+ *  closed, and of friction. */
+void MPMNodeContact::hold_together(const MPMContactLaw &law, double mass, int dim, double dt,
+                                   double &J, double *t)
+{
+  state = STUCK;
+  if (!(mass > 0.0)) return;
+  const double unit = law.pressure_unit * area * dt, c = unit * dt / mass;
+  double along = 0.0, aside[3] = {0.0, 0.0, 0.0}, spring[3] = {0.0, 0.0, 0.0}, square = 0.0;
+  for (int d = 0; d < dim; d++) along += bond->opening[d] * n[d];
+  along = std::max(along, 0.0);
+  for (int d = 0; d < dim; d++) {
+    aside[d] = bond->opening[d] - along * n[d];
+    square += aside[d] * aside[d];
+  }
+  const double share = MPMCohesiveLaw::share_of_shear(along, sqrt(square)),
+               f = law.cohesion.compliance(bond->reached, share) * (1.0 - bond->reached) /
+      (1.0 - bond->damage),
+               part = std::isfinite(f) ? c / (f + c) : 0.0;
+  const auto pull = [&](double opening, double stick) {
+    return std::isfinite(f) && unit > 0.0 ? (part * c * stick - unit * opening) / (f + part * c)
+                                          : 0.0;
+  };
+  double normal_pull = pull(along, J), shear = 0.0;
+  for (int d = 0; d < dim; d++) {
+    spring[d] = pull(aside[d], t[d]);
+    shear += spring[d] * spring[d];
+  }
+  shear = sqrt(shear);
+  const double tension = std::max(-normal_pull, 0.0), all = sqrt(tension * tension + shear * shear),
+               most = unit * (1.0 - bond->damage) *
+      law.cohesion.strength(MPMCohesiveLaw::share_of_shear(tension, shear)),
+               keep = all > most ? most / all : 1.0;
+  if (normal_pull < 0.0) normal_pull *= keep;
+
+  const double closing = J - mass * along / dt;
+  J = std::max(normal_pull, closing);
+  double rest[3] = {0.0, 0.0, 0.0}, length = 0.0;
+  for (int d = 0; d < dim; d++) {
+    rest[d] = t[d] - keep * spring[d];
+    length += rest[d] * rest[d];
+  }
+  const double rub = J > 0.0 && length > 0.0 ? law.friction.share(sqrt(length), bond->damage * J)
+                                             : 0.0;
+  for (int d = 0; d < dim; d++) t[d] = keep * spring[d] + rub * rest[d];
+  if (keep < 1.0 || bond->damage > 0.0) state = SLIDING;
+}
+
 double MPMNodeContact::iterate(const MPMContactLaw &law, int dim, int neighbors, double dt,
                                bool decided)
 {
@@ -194,7 +262,11 @@ double MPMNodeContact::iterate(const MPMContactLaw &law, int dim, int neighbors,
   }
   length = sqrt(length);
   if (decided && state == OPEN) J = 0.0;
-  const double keep = decided ? (state == STUCK ? 1.0 : 0.0) : limit(law, m, dim, length, dt, J);
+  double keep = 1.0;
+  if (bond)
+    hold_together(law, m, dim, dt, J, t);
+  else
+    keep = decided ? (state == STUCK ? 1.0 : 0.0) : limit(law, m, dim, length, dt, J);
 
   double change = fabs(J - normal), rounding = 0.0;
   normal = J;
@@ -212,7 +284,7 @@ double MPMContactReport::Entry::add(const MPMNodeContact &pair, int dim)
   count += 1.0;
   for (int d = 0; d < dim; d++) {
     impulse[d] += pair.impulse(d);
-    friction += pair.tangential[d] * (pair.rb[d] - pair.ra[d]);
+    friction += (pair.bond ? pair.impulse(d) : pair.tangential[d]) * (pair.rb[d] - pair.ra[d]);
   }
   return friction;
 }

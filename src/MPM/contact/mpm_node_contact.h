@@ -9,6 +9,7 @@
 #ifndef LMP_MPM_NODE_CONTACT_H
 #define LMP_MPM_NODE_CONTACT_H
 
+#include "contact/mpm_cohesive_law.h"
 #include "declare/option.h"
 #include "math/coulomb.h"
 #include "pointers.h"
@@ -19,11 +20,12 @@ namespace LAMMPS_NS {
 
 /** Law of contact between two bodies, and its keywords. */
 struct MPMContactLaw {
-  enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE };
+  enum Law { FRICTIONLESS, COULOMB, STICK, ADHESIVE, COHESIVE };
 
   Law law = FRICTIONLESS;
   MPM_NS::CoulombFriction friction = {0.0, -1.0};    ///< still < 0: equal to kinetic
   double normal_strength = 0.0, shear_strength = 0.0, release_work = 0.0;
+  MPMCohesiveLaw cohesion;
 
   double pressure_unit = 1.0;    ///< impulse by a unit of pressure, area, and time
   /** Bodies whose approach is zero up to round-off are in contact (with law stick, they are
@@ -32,8 +34,8 @@ struct MPMContactLaw {
   /** Impulses below this part of the momentum do not count as changes in iterations. */
   double rounded = 1.0e-2;
 
-  /** Declares the keyword law; adhesion: is there law adhesive? */
-  void declare_law(MPM_NS::Options &, bool adhesion);
+  /** Declares the keyword law; bonds: are there the laws adhesive and cohesive? */
+  void declare_law(MPM_NS::Options &, bool bonds);
   /** The rule for coefficients of friction. */
   MPM_NS::OptionRule coefficients() const;
   /** Sets the coefficient of static friction if the input does not. */
@@ -41,6 +43,15 @@ struct MPMContactLaw {
   bool operator==(const MPMContactLaw &) const;
   /** Share of the adhesive strength that remains when the bodies are apart by this distance. */
   double adhesion_at(double opening) const;
+};
+
+/** What a law of cohesion needs of the bond of two bodies at a node. */
+struct MPMNodeBond {
+  double
+      opening[3];    ///< of the part that holds, from the first body to the second one [distance]
+  double damage;     ///< mean, 0 to 1
+  double reached;    ///< damage of the part that holds
+  double weight;     ///< of the points that have it
 };
 
 /** What walls will do to a body at a node after contact. */
@@ -62,12 +73,14 @@ struct MPMNodeWalls {
 struct MPMNodeContact {
   enum State : char { OPEN, SLIDING, STUCK };
 
-  int a, b;           ///< indices of the bodies
-  double *ra, *rb;    ///< records of the node in both bodies
-  double n[3];        ///< unit normal from a to b
-  double area;        ///< of the interface at the node
-  double adhesion;    ///< share of the adhesive strength that remains at this gap
-  double water;       ///< part of the impulse on b along n that pore water takes
+  int a, b;                             ///< indices of the bodies
+  double *ra, *rb;                      ///< records of the node in both bodies
+  double n[3];                          ///< unit normal from a to b
+  double area;                          ///< of the interface at the node
+  double adhesion;                      ///< share of the adhesive strength that remains at this gap
+  double water;                         ///< part of the impulse on b along n that pore water takes
+  bool touches;                         ///< are the bodies as near as in contact, by their volumes?
+  const MPMNodeBond *bond = nullptr;    ///< null: not bonded, nor were they
   MPMNodeWalls walls_a, walls_b;
   bool alike = true;    ///< walls act on the same components of both bodies
   char left = 0;        ///< bits: components left to the walls, or to contact at the mirror node
@@ -90,6 +103,8 @@ struct MPMNodeContact {
   double approach(int dim, int neighbors, double *u, double &un) const;
   double limit(const MPMContactLaw &, double mass, int dim, double length, double dt,
                double &normal);
+  void hold_together(const MPMContactLaw &, double mass, int dim, double dt, double &normal,
+                     double *tangential);
 };
 
 /** What each two of several bodies do to each other: the output of a fix with an array of 5 columns
@@ -100,10 +115,10 @@ class MPMContactReport : protected Pointers {
   struct Entry {                            // this rank's share
     double impulse[3] = {0.0, 0.0, 0.0};    ///< on the second body in the last step
     double count = 0.0;                     ///< nodes in contact
-    double work = 0.0;                      ///< of friction so far, without the unit of energy
+    double work = 0.0;    ///< of friction and bonds so far, without the unit of energy
 
-    /** Counts a contact, but not the work of its friction with the velocities that its records have
-     *  now, which it returns. */
+    /** Counts a contact, but not the work of its friction and bonds with the velocities that its
+     *  records have now, which it returns. */
     double add(const MPMNodeContact &, int dim);
   };
 
