@@ -251,8 +251,8 @@ static const std::string parting = plane("si", "p p", "-0.3 2.6 0 0.08 -0.05 0.0
     "timestep 2e-4\nvariable fx equal f_c[1][1]/0.08\nvariable w equal f_c/0.08\n";
 
 // With linear softening, rho c (v - d'/2) = s (1 - d/d_1) has the solution
-// d = (A/B) (exp(B t) - 1),  A = 2 (v - s/rho c),  B = 2 s/(rho c d_1),  until d = d_1. Here, d_1 is
-// a tenth, then a fifth of a cell
+// d = (A/B) (exp(B t) - 1),  A = 2 (v - s/rho c),  B = 2 s/(rho c d_1),  until d = d_1. Here, d_1
+// is a tenth, then a fifth of a cell
 TEST(Interface, IsOpenedByWavesInTime)
 {
   for (const double energy : {4e-4, 8e-4}) {

@@ -8,10 +8,10 @@
 
 /* The traction at a node is the mean of those of the points nearby, with the weights V_p N_ip. A
    point opens by the mean of the velocities at which the nodes in reach open, with the weights
-   A_i N_ip, where A_i is the area of the interface that belongs to the node: what light nodes behind
-   the interface do must not count. The damage of a point follows from its own opening. Nothing else
-   is transferred, so that bonds do not fade. Where points with whole and broken bonds are near, the
-   part that holds has its own opening and damage: else, it would be soft. */
+   A_i N_ip, where A_i is the area of the interface that belongs to the node: what light nodes
+   behind the interface do must not count. The damage of a point follows from its own opening.
+   Nothing else is transferred, so that bonds do not fade. Where points with whole and broken bonds
+   are near, the part that holds has its own opening and damage: else, it would be soft. */
 
 #include "contact/mpm_cohesive_interface.h"
 
