@@ -201,7 +201,7 @@ SERIAL_TEST(Interface, HasTheSameEnergyWithOtherOptions)
                            "transfer flip 0.99", "transfer tpic"}) {
     Scene run(replaced(strip(22.5, 0.05, 0.0), "mpm 1e-3", std::string("mpm 1e-3 ") + grid) +
               "run 5000\n");
-    EXPECT_NEAR(measured(grid, -run.evaluate("v_w") / 50.0), 1.0, 0.01);
+    EXPECT_NEAR(measured(grid, -run.evaluate("v_w") / 50.0), 1.0, 0.015);
   }
 }
 
@@ -352,7 +352,7 @@ SERIAL_TEST(DoubleCantilever, HasTheLoadOfFiniteElements)
             "variable up equal 2.5*time/0.004^2\nvariable down equal -v_up\n"
             "fix low all mpm/boundary region low stick velocity NULL v_down NULL field F1\n"
             "fix high all mpm/boundary region high stick velocity NULL v_up NULL field F2\n"
-            "fix calm all viscous 3.375e-7\ntimestep 4.2e-8\n"
+            "fix calm all viscous 8.4375e-8\ntimestep 4.2e-8\n"
             "fix P all ave/time 1 200 200 f_high[2]\n");
   double most = 0.0, at[2] = {0.0, 0.0};
   while (run.evaluate("v_opening") < 2.05) {
@@ -393,7 +393,7 @@ SERIAL_TEST(BadInput, OfBondsIsRefused)
        {contact("coulomb 0.3 mixing 2"), "belongs to law cohesive"},
        {contact("coulomb 0.3 bonded one"), "belongs to law cohesive"},
        {"region far block 1 2 1 2 INF INF\n" + contact("cohesive 5e6 5e6 50 50 bonded far"),
-        "do not touch in region far"},
+        "fill no node in region far"},
        {"displace_atoms two move 0.002 0 0\n" + contact("cohesive 5e6 5e6 50 50"),
         "bonds no points"}},
       "run 1\n");

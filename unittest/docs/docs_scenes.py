@@ -187,10 +187,11 @@ def scene_for(lines):
         named = BODIES[:2] if pairs else [word for word in text.split() if word in BODIES]
         grid = "".join("group %s type %d\nfix %s %s mpm 0.01\n" % (name, k + 1, name, name)
                        for k, name in enumerate(named))
+        low, high, step = (0.05, 0.09, 0.02) if "law cohesive" in text else (0.06, 0.08, 0.03)    # side by side, to be bonded
         for k in range(len(named)):
-            before += ("region body%d block 0.06 0.08 %g %g 0.06 0.08\n"
+            before += ("region body%d block %g %g %g %g %g %g\n"
                        "create_points %d region body%d ppc 2\ngroup %s type %d\n" %
-                       (k, 0.03 * k + 0.01, 0.03 * k + 0.03, k + 1, k, named[k], k + 1))
+                       (k, low, high, step * k + 0.01, step * k + 0.03, low, high, k + 1, k, named[k], k + 1))
     if "damage phasefield" in text and "mpm/phasefield" not in text:
         before += "fix cracks all mpm/phasefield\n"
     on_one_mesh = "mpm/mesh/contact" in text

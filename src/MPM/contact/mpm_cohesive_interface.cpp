@@ -142,8 +142,9 @@ void MPMCohesiveInterface::join(const MPMContacts &contacts, const std::string &
   MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
   if (all == 0)
     error->all(FLERR, Error::NOLASTLINE,
-               "Fix mpm/contact {}: law cohesive bonds no points, as bodies do not touch{}: place "
-               "them side by side, or use a smaller share of gap yes, or another law",
+               "Fix mpm/contact {}: law cohesive bonds no points, as bodies fill no node{} between "
+               "them: place them side by side, use a smaller share of gap yes if one is less than "
+               "four cells wide, or use another law",
                fix.id, region ? " in region " + region_id : "");
   warn_coarse();
 }
