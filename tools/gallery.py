@@ -23,7 +23,7 @@ PAGE = os.path.join(PAGES, "Howto_mpm_gallery.rst")
 
 # in this order; a scene that is in none of them is an error
 TOPICS = {
-    "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall branching hypervelocity "
+    "Impact and metals": "taylor-bar taylor-bar-axisymmetric taylor-bar-total necking spall branching double-cantilever hypervelocity "
                          "ring-on-block scratch blast-on-plate microstructure foam",
     "Elastic bodies": "rubber-band folds beam arch buckling press-fit tube plate-with-hole refined-plate airbag folded-airbag tent cook-membrane tissue two-disks ring-collision spinning-disk incline vortex hare net",
     "Heat": "cooling-plate finned-pipe quench casting friction-weld machining hot-grains",

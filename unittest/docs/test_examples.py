@@ -37,7 +37,7 @@ COARSER = {"taylor-bar": 2.0, "spall": 2.0, "cook-membrane": 2.0, "hypervelocity
 
 # steps, where a part of the run will do
 FEWER_STEPS = {"grains-on-block": 1000, "impact-on-crystal": 1000, "vortex": 110, "ring-on-block": 1200, "hopper": 1500,
-               "boulders-in-debris": 600, "rockfall": 700, "landslide": 600, "tyre-on-gravel": 500, "settling": 600, "scratch": 400, "branching": 500,
+               "boulders-in-debris": 600, "rockfall": 700, "landslide": 600, "tyre-on-gravel": 500, "settling": 600, "scratch": 400, "branching": 500, "double-cantilever": 3000,
                "friction-weld": 9000, "machining": 2500, "foam": 2000, "net": 2000, "tent": 1000, "folded-airbag": 15000, "microstructure": 10, "hare": 400, "quench": 1000, "casting": 1000,
                "pouring-honey": 400, "drop": 300, "rayleigh-taylor": 220, "extruder": 8000, "elastic-gate": 26500, "elastic-plate": 4600}    # until the last time of PUBLISHED
 
