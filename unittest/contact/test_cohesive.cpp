@@ -173,9 +173,9 @@ TEST(Interface, HasStrengthAndEnergy)
       run.commands("run 50 post no\n");
       largest = std::max(largest, -run.evaluate("v_fn"));
     }
-    EXPECT_NEAR(measured("stress/strength", largest / 5e6), 1.0, angle == 45.0 ? 0.035 : 0.02);
+    EXPECT_NEAR(measured("stress/strength", largest / 5e6), 1.0, angle == 45.0 ? 0.03 : 0.01);
     EXPECT_NEAR(measured("work/energy", -run.evaluate("v_w") / 50.0), 1.0,
-                angle > 0.0 ? 0.035 : 0.01);    // turned ends are steps of points
+                angle == 45.0 ? 0.035 : 0.01);    // its ends are steps of points
     EXPECT_EQ(run.evaluate("v_fn"), 0.0);
   }
 }
@@ -184,7 +184,7 @@ TEST(Interface, HasStrengthAndEnergy)
 TEST(Interface, HasAnEnergyOfShear)
 {
   Scene run(strip(0.0, 0.0, 0.1, "", "cohesive 2e7 5e6 200 100") + "run 8000\n");
-  EXPECT_NEAR(measured("work/energy", -run.evaluate("v_w") / 100.0), 1.0, 0.03);
+  EXPECT_NEAR(measured("work/energy", -run.evaluate("v_w") / 100.0), 1.0, 0.01);
 }
 
 // Exponential softening, stiff bonds, other shapes and transfers: the same energy
@@ -215,17 +215,17 @@ SERIAL_TEST(Interface, RemembersItsDamage)
       "thermo_style custom step c_e[1] c_D\nrun 4000\n");
   const double before = run.evaluate("v_fn");
   EXPECT_EQ(log_of(run, "run 4000 post no\n").find("Numerical errors"), std::string::npos);
-  EXPECT_NEAR(run.evaluate("v_fn") / before, 0.0, 0.02);
+  EXPECT_NEAR(run.evaluate("v_fn") / before, 0.0, 0.01);
   // linear softening, and a traction in proportion to the opening: G D is gone
   EXPECT_NEAR(measured("work/(G D)", -run.evaluate("v_w") / (50.0 * run.evaluate("c_D"))), 1.0,
-              0.03);
+              0.01);
   run.commands("run 2000 post no\n");
   // by 5 um over 16 to 17 mm
   EXPECT_NEAR(measured("pressure", run.evaluate("v_fn") / 3.03e6), 1.0, 0.1);
   run.commands("run 6000 post no\n");
-  EXPECT_NEAR(measured("stress again", run.evaluate("v_fn") / before), 1.0, 0.03);
+  EXPECT_NEAR(measured("stress again", run.evaluate("v_fn") / before), 1.0, 0.02);
   run.commands("run 4500 post no\n");
-  EXPECT_NEAR(measured("work/energy", -run.evaluate("v_w") / 50.0), 1.0, 0.02);
+  EXPECT_NEAR(measured("work/energy", -run.evaluate("v_w") / 50.0), 1.0, 0.01);
 }
 
 // A strip that is bonded on half of its width takes half of the energy
@@ -237,7 +237,7 @@ SERIAL_TEST(Interface, IsBondedInARegion)
                "run 1 post no\ncompute damage all reduce max f_c[1]\nrun 1\n");
   EXPECT_EQ(run.evaluate("c_damage"), 1.0);
   run.commands("run 6000\n");
-  EXPECT_NEAR(measured("work/energy", -run.evaluate("v_w") / 25.0), 1.0, 0.05);
+  EXPECT_NEAR(measured("work/energy", -run.evaluate("v_w") / 25.0), 1.0, 0.01);
 }
 
 /** Two bars that part with .05 each, as drawn in test_contact: c = 10, rho c = 10; the strength is
@@ -289,11 +289,11 @@ SERIAL_TEST(Interface, IsACircleInAxialSymmetry)
     run.commands("run 10 post no\n");
     largest = std::max(largest, std::abs(run.evaluate("f_c[1][2]")) / (PI * 4.0));
   }
-  EXPECT_NEAR(measured("pull/strength", largest / 0.2), 1.0, 0.06);
-  EXPECT_NEAR(measured("work/energy", -run.evaluate("f_c") / (PI * 4.0 * 0.01)), 1.0, 0.06);
+  EXPECT_NEAR(measured("pull/strength", largest / 0.2), 1.0, 0.015);
+  EXPECT_NEAR(measured("work/energy", -run.evaluate("f_c") / (PI * 4.0 * 0.01)), 1.0, 0.01);
 }
 
-// A bond of three bodies, and one in 3d: the same in each column of cells
+// In 3d, the same in each row of cells
 SERIAL_TEST(Interface, IsTheSameIn3d)
 {
   const auto bars = [](const char *first, int dim) {
@@ -316,6 +316,43 @@ SERIAL_TEST(Interface, IsTheSameIn3d)
           3));
   EXPECT_LT(flat.evaluate("v_fx"), -0.1);
   EXPECT_NEAR(solid.evaluate("v_fx") / flat.evaluate("v_fx"), 1.0, 1e-9);
+}
+
+/** A block of 1 x .4 m and 400 kg on a floor, bonded by next to nothing, that has been pushed. */
+static const std::string pushed = plane("si", "p f", "0 6 0 1.5", 2) +
+    fields({{"one", "block 0 6 0 0.4 INF INF"}, {"two", "block 1 2 0.4 0.8 INF INF"}}, "0.05") +
+    "fix m all mpm/material density 1000 linear 1e7 0.3\n"
+    "fix c all mpm/contact F1 F2 law cohesive 2e3 2e3 2 2 0.3\n"
+    "fix floor all mpm/boundary ylo stick\nfix g all gravity 10 vector 0 -1 0\n"
+    "velocity two set 3 0 0\ntimestep 1.6e-4\nvariable v equal vcm(two,x)\n";
+
+// When the bond has broken, the block slides with friction. Sides of the interface that have slid
+// along each other are no history of each other any more: they would plough
+SERIAL_TEST(Interface, SlidesWhenItHasBroken)
+{
+  Scene run(pushed + "run 1250\n");
+  EXPECT_NEAR(measured("speed/(v - mu g t)", run.evaluate("v_v") / (3.0 - 0.3 * 10.0 * 0.2)), 1.0,
+              0.01);
+}
+
+// Parts of a body that are too narrow to fill nodes are not left out without a word
+SERIAL_TEST(Interface, TellsWhatItDoesNotBond)
+{
+  const std::string ribs = plane("si", "p p", "-10 40 -10 20", 2, 0.5) +
+      fields({{"one", "block 0 30 0 5 INF INF"}, {"two", "RIBS"}}, "1.0") +
+      "fix m all mpm/material density 1 linear 1e3 0.3\n"
+      "fix c all mpm/contact F1 F2 law cohesive 1 1 0.1 0.1 MORE\ntimestep 1e-3\nrun 1\n";
+  const auto said = [&](const std::string &more) {
+    return times_said(replaced(ribs,
+                               {{"region two RIBS",
+                                 "region wide block 2 12 5 10 INF INF\n"
+                                 "region rib block 20 22 5 10 INF INF\n"
+                                 "region two union 2 wide rib"},
+                                {"MORE", more}}),
+                      "that are as near to another body");
+  };
+  EXPECT_EQ(said(""), 1);
+  EXPECT_EQ(said("gap yes 0.6"), 0);
 }
 
 // Any number of ranks, and a run that goes on from a restart file

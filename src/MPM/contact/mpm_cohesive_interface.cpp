@@ -40,7 +40,7 @@ using namespace MPM_NS;
 // first layer of points with one to four of them per cell, at any place in the cell
 static constexpr double NEAR = 0.1;
 // opening of broken bonds, in node spacings, from which on the volumes of bodies tell more
-static constexpr double FAR = 0.5;
+static constexpr double FAR = 0.1;
 // length of the zone that softens, in node spacings, below which a crack is not resolved
 static constexpr double COARSE = 2.0;
 // weight of points with a broken bond in the opening: where no other ones are near, it is theirs
@@ -101,51 +101,60 @@ void MPMCohesiveInterface::visit(const MPMContacts &contacts, int body, const Wh
   });
 }
 
-/** Ends of bodies, where nodes are not full, belong to the interface if nodes next to them
- *  touch. */
+/** Ends of bodies, where nodes are not full, belong to the interface if nodes next to them touch;
+ *  others that are as near do not, which is said. */
 void MPMCohesiveInterface::join(const MPMContacts &contacts, const std::string &region_id)
 {
   Region *const region = region_id.empty() ? nullptr : domain->get_region_by_id(region_id);
   if (region) region->prematch();
   std::vector<double> touching(contacts.pairs.size(), 0.0), next;
   for (std::size_t p = 0; p < contacts.pairs.size(); p++) touching[p] = contacts.pairs[p].touches;
-  bigint mine = 0, all;
-  for (int round = 0; round < 2; round++) {
+  enum { BONDED, NEARBY, NCOUNTS };    // points that ought to be bonded
+  bigint mine[NCOUNTS] = {0, 0}, all[NCOUNTS];
+  const auto not_yet = [&](int i) {
+    return rows[i][DAMAGE] == NO_BOND;
+  };
+  enum Round { AT_NODES_THAT_TOUCH, NEXT_TO_THEM, OTHERS };
+  for (const Round round : {AT_NODES_THAT_TOUCH, NEXT_TO_THEM, OTHERS}) {
     next.assign(contacts.pairs.size(), 0.0);
     for (int k = 0; k < bodies.size(); k++)
-      visit(
-          contacts, k,
-          [&](int i) {
-            return rows[i][DAMAGE] == NO_BOND;
-          },
-          [&](int i, const std::vector<Place> &here) {
-            double other = 0.0, both = 0.0;
-            bool touches = false;
-            for (const auto &at : here) {
-              const auto &pair = contacts.pairs[at.pair];
-              const double a = bodies[pair.a].fraction_at(pair.ra),
-                           b = bodies[pair.b].fraction_at(pair.rb);
-              other += at.weight * (pair.a == k ? b : a);
-              both += at.weight * (a + b);
-              touches = touches || touching[at.pair] > 0.0;
-            }
-            if (!touches || !(other > NEAR * both)) return;
-            const double *const x = atom->x[i];
-            const bool holds = !region || region->match(x[0], x[1], x[2]);
-            rows[i][DAMAGE] = holds ? 0.0 : 1.0;
-            mine += holds;
-            for (const auto &at : here) next[at.pair] = 1.0;
-          });
+      visit(contacts, k, not_yet, [&](int i, const std::vector<Place> &here) {
+        double other = 0.0, both = 0.0;
+        bool touches = false;
+        for (const auto &at : here) {
+          const auto &pair = contacts.pairs[at.pair];
+          const double a = bodies[pair.a].fraction_at(pair.ra),
+                       b = bodies[pair.b].fraction_at(pair.rb);
+          other += at.weight * (pair.a == k ? b : a);
+          both += at.weight * (a + b);
+          touches = touches || touching[at.pair] > 0.0;
+        }
+        if (!(other > NEAR * both)) return;
+        const double *const x = atom->x[i];
+        const bool holds = !region || region->match(x[0], x[1], x[2]);
+        if (round == OTHERS) mine[NEARBY] += holds;
+        if (round == OTHERS || !touches) return;
+        rows[i][DAMAGE] = holds ? 0.0 : 1.0;
+        mine[BONDED] += holds;
+        for (const auto &at : here) next[at.pair] = 1.0;
+      });
     contacts.sum(bodies, 1, next);
     touching.swap(next);
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_LMP_BIGINT, MPI_SUM, world);
-  if (all == 0)
+  MPI_Allreduce(mine, all, NCOUNTS, MPI_LMP_BIGINT, MPI_SUM, world);
+  const std::string where = region ? " in region " + region_id : "";
+  if (all[BONDED] == 0)
     error->all(FLERR, Error::NOLASTLINE,
                "Fix mpm/contact {}: law cohesive bonds no points, as bodies fill no node{} between "
                "them: place them side by side, use a smaller share of gap yes if one is less than "
                "four cells wide, or use another law",
-               fix.id, region ? " in region " + region_id : "");
+               fix.id, where);
+  if (all[NEARBY] > 0 && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix mpm/contact {}: law cohesive bonds {} points{}, but not {} that are as "
+                   "near to another body where nodes are not full: use a smaller share of gap yes "
+                   "if they ought to be bonded",
+                   fix.id, all[BONDED], where, all[NEARBY]);
   warn_coarse();
 }
 
